@@ -1,0 +1,1 @@
+//! Ray casting for Gonio: one trait over rays in eights, several backends

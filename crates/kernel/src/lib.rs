@@ -1,0 +1,51 @@
+//! The reflectance kernel of Gonio: what light does at a surface point, written once for `f32`, `f64` and eight lanes.
+//!
+//! The nouns, in the order in which a shading call meets them:
+//!
+//! - [`Real`] is a number: `f32`, `f64` or [`F32x8`] (eight `f32` side by side). Everything below is generic over it,
+//!   and lane *i* of a lane result equals the `f32` result bit for bit.
+//! - [`Vec3`], [`Rgb`] and [`Frame`] carry directions, colours and the change to the local frame, in which the shading
+//!   normal is `z`, the tangent `x` and the bitangent `y`.
+//! - A [`Lobe`] is one scattering model: it evaluates `f_cos` and `pdf`, samples `wi`, and weighs discrete events.
+//!   [`lobe::Lambert`], [`lobe::Mirror`] and [`lobe::Conductor`] are lobes; a user's own type can be one.
+//! - A [`Surface`] is a short list of weighted lobes: resolved parameters, no textures.
+//! - A [`Closure`] is a surface seen from `wo`: the only mixture code, and the only guard against input outside the domain.
+//!
+//! Directions are unit vectors that point away from the surface. `wo` (towards the viewer) comes first, random numbers
+//! `u` come last. There is no std, no allocation, no panic and no unsafe code in this crate.
+//!
+//! ```
+//! use gonio_kernel::{Closure, Rgb, Surface, Vec3, lobe::Lambert};
+//!
+//! let surface = Surface::of(Lambert::new(Rgb::new(0.8_f32, 0.5, 0.2)));
+//! let closure = Closure::new(&surface, Vec3::new(0.0, 0.0, 1.0));
+//! let sample = closure.sample([0.3, 0.6, 0.1]);
+//! let value = closure.eval(sample.wi);
+//! let weight = value.f_cos * (1.0 / value.pdf);
+//! assert!((weight.g - 0.5).abs() < 1e-6);
+//! ```
+#![no_std]
+#![forbid(unsafe_code)]
+
+pub mod closure;
+pub mod frame;
+pub mod fresnel;
+mod lanes;
+pub mod lobe;
+pub mod math;
+pub mod microfacet;
+mod real;
+mod rgb;
+pub mod surface;
+pub mod units;
+mod vec3;
+pub mod warp;
+
+pub use closure::Closure;
+pub use frame::Frame;
+pub use lanes::{F32x8, Mask8, U32x8};
+pub use lobe::{Event, Lobe, Sample, Value};
+pub use real::{Mask, Precision, Real};
+pub use rgb::Rgb;
+pub use surface::{Alpha, Roughness, Surface};
+pub use vec3::Vec3;

@@ -1,0 +1,150 @@
+//! `Lobe`: the contract that every scattering model obeys. Its models are one file each.
+//!
+//! A lobe has a continuous part, described by a density over directions, and may have a discrete part, a set of single
+//! directions with probabilities. [`Lobe::eval`] is the only author of value and density of the continuous part,
+//! [`Lobe::discrete`] the only author of weight and probability of the discrete part, and [`Lobe::sample`] only chooses.
+//! So value and density cannot drift apart, and a purely discrete lobe evaluates to 0, 0.
+//!
+//! Inside the domain (unit directions to 1e-3 in |w|², parameters in range) every result is finite and non-negative with
+//! no guard. Outside, a lobe may return anything but must not panic; [`crate::Closure`] turns that into exact zeros.
+
+mod conductor;
+mod lambert;
+mod mirror;
+
+pub use conductor::Conductor;
+pub use lambert::Lambert;
+pub use mirror::Mirror;
+
+use crate::real::{Mask, Real};
+use crate::rgb::Rgb;
+use crate::vec3::Vec3;
+
+/// What a pair of directions, or a discrete event, is worth.
+#[derive(Clone, Copy, Debug)]
+pub struct Value<R> {
+    /// f·|cos_i| \[1/sr\]; for a discrete event its weight times its probability.
+    pub f_cos: Rgb<R>,
+    /// Density per solid angle \[1/sr\]; for a discrete event its probability. 0 means it cannot happen.
+    pub pdf: R,
+}
+
+/// What a sample did.
+#[derive(Clone, Copy, Debug)]
+pub struct Event<R: Real> {
+    /// Which lobe of a closure made it; 0 for a lobe of its own.
+    pub lobe: R::Int,
+    /// `wi` lies on the other side of the surface.
+    pub transmitted: R::Mask,
+    /// `wi` came from a discrete part: its worth is [`Lobe::discrete`], not [`Lobe::eval`].
+    pub discrete: R::Mask,
+    /// Nothing was sampled: `wi` is some finite unit direction, to be ignored.
+    pub failed: R::Mask,
+}
+
+/// A sampled direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample<R: Real> {
+    /// The direction, local, unit.
+    pub wi: Vec3<R>,
+    /// How it came about.
+    pub event: Event<R>,
+}
+
+/// A scattering model with its parameters, in the local frame.
+pub trait Lobe<R: Real> {
+    /// f·|cos_i| and density of the continuous part: 0, 0 for a purely discrete lobe.
+    fn eval(&self, wo: Vec3<R>, wi: Vec3<R>) -> Value<R>;
+
+    /// Chooses wi for wo. `u` are three uniform numbers in [0, 1); the first serves choices, the others positions.
+    fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R>;
+
+    /// Weight times probability, and probability, of a discrete event that [`Lobe::sample`] returned for this wo.
+    fn discrete(&self, _wo: Vec3<R>, _event: &Event<R>) -> Value<R> {
+        Value::zero()
+    }
+
+    /// About how much of the light from wo is scattered: steers the choice between lobes, never a result.
+    fn albedo_estimate(&self, wo: Vec3<R>) -> Rgb<R>;
+
+    /// Whether the parameters lie in their domain.
+    fn domain(&self) -> R::Mask;
+}
+
+impl<R: Real> Value<R> {
+    /// No light, cannot happen.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self { f_cos: Rgb::zero(), pdf: R::ZERO }
+    }
+    /// self where `mask`, exact zeros elsewhere.
+    #[inline(always)]
+    pub fn or_zero(self, mask: R::Mask) -> Self {
+        Self { f_cos: self.f_cos.or_zero(mask), pdf: self.pdf.or_zero(mask) }
+    }
+    /// Finite and non-negative throughout.
+    #[inline(always)]
+    pub fn is_sound(&self) -> R::Mask {
+        let sound = |x: R| x.ge(R::ZERO) & x.is_finite();
+        sound(self.f_cos.r) & sound(self.f_cos.g) & sound(self.f_cos.b) & sound(self.pdf)
+    }
+}
+
+impl<R: Real> Event<R> {
+    /// A continuous reflection that failed where `failed`.
+    #[inline(always)]
+    pub fn reflected(failed: R::Mask) -> Self {
+        let no = R::Mask::splat(false);
+        Self { lobe: R::int(0), transmitted: no, discrete: no, failed }
+    }
+}
+
+/// The table of models: calls `$macro!` with the name of every lobe. The enum that closures hold, the proof that the
+/// kernel cannot panic and the rows of the validation are made from it, so a lobe that is missing somewhere fails to build.
+#[macro_export]
+macro_rules! for_each_lobe {
+    ($macro:ident) => {
+        $macro! { Lambert, Mirror, Conductor }
+    };
+}
+
+macro_rules! any_lobe {
+    ($($model:ident),*) => {
+        /// Any of the kernel's lobes.
+        #[derive(Clone, Copy, Debug)]
+        pub enum AnyLobe<R> {$(
+            #[doc = concat!("See [`", stringify!($model), "`].")]
+            $model($model<R>),
+        )*}
+
+        impl<R: Real> Lobe<R> for AnyLobe<R> {
+            #[inline(always)]
+            fn eval(&self, wo: Vec3<R>, wi: Vec3<R>) -> Value<R> {
+                match self {$( Self::$model(lobe) => lobe.eval(wo, wi), )*}
+            }
+            #[inline(always)]
+            fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R> {
+                match self {$( Self::$model(lobe) => lobe.sample(wo, u), )*}
+            }
+            #[inline(always)]
+            fn discrete(&self, wo: Vec3<R>, event: &Event<R>) -> Value<R> {
+                match self {$( Self::$model(lobe) => lobe.discrete(wo, event), )*}
+            }
+            #[inline(always)]
+            fn albedo_estimate(&self, wo: Vec3<R>) -> Rgb<R> {
+                match self {$( Self::$model(lobe) => lobe.albedo_estimate(wo), )*}
+            }
+            #[inline(always)]
+            fn domain(&self) -> R::Mask {
+                match self {$( Self::$model(lobe) => lobe.domain(), )*}
+            }
+        }
+
+        $(impl<R> From<$model<R>> for AnyLobe<R> {
+            fn from(lobe: $model<R>) -> Self {
+                Self::$model(lobe)
+            }
+        })*
+    };
+}
+for_each_lobe!(any_lobe);

@@ -1,0 +1,49 @@
+//! Lambert's perfectly diffuse reflector: f = ρ/π, so that exitance = ρ · irradiance (Lambert 1760, "Photometria").
+//!
+//! Reciprocal; conserves energy for ρ ≤ 1, with equality in a white furnace. Reflects on the side of the normal only.
+//! Sampled by cosine, which makes every weight exactly ρ up to rounding.
+
+use super::{Event, Lobe, Sample, Value};
+use crate::frame::both_above;
+use crate::real::Real;
+use crate::rgb::Rgb;
+use crate::vec3::Vec3;
+use crate::warp::{pdf_cosine_hemisphere, sample_cosine_hemisphere};
+
+/// A diffuse reflector of the given albedo ρ, each channel in [0, 1].
+#[derive(Clone, Copy, Debug)]
+pub struct Lambert<R> {
+    /// The reflected part of the light.
+    pub albedo: Rgb<R>,
+}
+
+impl<R> Lambert<R> {
+    /// A diffuse reflector of albedo ρ in [0, 1].
+    pub const fn new(albedo: Rgb<R>) -> Self {
+        Self { albedo }
+    }
+}
+
+impl<R: Real> Lobe<R> for Lambert<R> {
+    #[inline(always)]
+    fn eval(&self, wo: Vec3<R>, wi: Vec3<R>) -> Value<R> {
+        let pdf = pdf_cosine_hemisphere(wi);
+        Value { f_cos: self.albedo * pdf, pdf }.or_zero(both_above(wo, wi))
+    }
+
+    #[inline(always)]
+    fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R> {
+        let wi = sample_cosine_hemisphere([u[1], u[2]]);
+        Sample { wi, event: Event::reflected(!both_above(wo, wi)) }
+    }
+
+    #[inline(always)]
+    fn albedo_estimate(&self, _wo: Vec3<R>) -> Rgb<R> {
+        self.albedo
+    }
+
+    #[inline(always)]
+    fn domain(&self) -> R::Mask {
+        self.albedo.within(0.0, 1.0)
+    }
+}

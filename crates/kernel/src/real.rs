@@ -1,0 +1,219 @@
+//! `Real`: the few operations that physics needs of a number, named as on `f32`, and the `Mask` that goes with it.
+//!
+//! Two rules make eight lanes equal the scalar bit for bit. `min`, `max` and `select` are written here, with one
+//! answer for NaN and for the sign of zero (std leaves both open). `sqrt` and `mul_add` of a scalar are lane 0 of
+//! `wide`'s narrow types: `core` has neither, and std's fused multiply-add rounds differently where the target has none.
+
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub};
+
+/// The truth of a comparison, lane by lane: `bool` for a scalar.
+pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+    /// The same truth in every lane.
+    fn splat(value: bool) -> Self;
+    /// True if some lane is true.
+    fn any(self) -> bool;
+    /// True if every lane is true.
+    fn all(self) -> bool;
+}
+
+/// How many bits a significand has: chooses the coefficient table of [`crate::math`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// IEEE binary32.
+    Single,
+    /// IEEE binary64.
+    Double,
+}
+
+/// A real number: `f32`, `f64`, or several `f32` in lanes.
+pub trait Real:
+    Copy
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + MulAssign
+    + 'static
+{
+    /// The result of a comparison.
+    type Mask: Mask;
+    /// A small non-negative integer per lane: which lobe, which quadrant.
+    type Int: Copy + Debug;
+
+    /// The precision of one lane.
+    const PRECISION: Precision;
+    /// 0
+    const ZERO: Self;
+    /// 1
+    const ONE: Self;
+
+    /// The constant `x`, rounded to this precision, in every lane.
+    fn lit(x: f64) -> Self;
+    /// √self, correctly rounded; NaN below zero.
+    fn sqrt(self) -> Self;
+    /// |self|
+    fn abs(self) -> Self;
+    /// self·a + b, fused where the build's target has the instruction.
+    fn mul_add(self, a: Self, b: Self) -> Self;
+    /// The smaller of two: `if self < b { self } else { b }`, so a NaN on either side gives `b`.
+    fn min(self, b: Self) -> Self;
+    /// The larger of two: `if self > b { self } else { b }`, so a NaN on either side gives `b`.
+    fn max(self, b: Self) -> Self;
+    /// |self| with the sign bit of `sign`, that of a zero included.
+    fn copysign(self, sign: Self) -> Self;
+    /// self < b, false for NaN.
+    fn lt(self, b: Self) -> Self::Mask;
+    /// self ≤ b, false for NaN.
+    fn le(self, b: Self) -> Self::Mask;
+    /// self = b, false for NaN.
+    fn same(self, b: Self) -> Self::Mask;
+    /// `yes` where `mask`, `no` elsewhere; neither is computed with.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// The nearest integer (ties to even) as a real and as an integer modulo 2²²; for |self| < 2²¹.
+    fn round_to_int(self) -> (Self, Self::Int);
+    /// The integer `x` in every lane.
+    fn int(x: u32) -> Self::Int;
+    /// Whether `bit` of `x` is set.
+    fn int_bit(x: Self::Int, bit: u32) -> Self::Mask;
+    /// x = y
+    fn int_same(x: Self::Int, y: Self::Int) -> Self::Mask;
+    /// `yes` where `mask`, `no` elsewhere.
+    fn int_select(mask: Self::Mask, yes: Self::Int, no: Self::Int) -> Self::Int;
+
+    /// self > b, false for NaN.
+    #[inline(always)]
+    fn gt(self, b: Self) -> Self::Mask {
+        b.lt(self)
+    }
+    /// self ≥ b, false for NaN.
+    #[inline(always)]
+    fn ge(self, b: Self) -> Self::Mask {
+        b.le(self)
+    }
+    /// self where `mask`, +0 elsewhere, whatever self is there, NaN included.
+    #[inline(always)]
+    fn or_zero(self, mask: Self::Mask) -> Self {
+        Self::select(mask, self, Self::ZERO)
+    }
+    /// Neither NaN nor infinite.
+    #[inline(always)]
+    fn is_finite(self) -> Self::Mask {
+        // inf − inf and NaN − NaN are NaN, which equals nothing.
+        (self - self).same(Self::ZERO)
+    }
+    /// self²
+    #[inline(always)]
+    fn sqr(self) -> Self {
+        self * self
+    }
+    /// 1 / self, a true division.
+    #[inline(always)]
+    fn recip(self) -> Self {
+        Self::ONE / self
+    }
+    /// self limited to [lo, hi]; a NaN gives `lo`.
+    #[inline(always)]
+    fn clamp(self, lo: f64, hi: f64) -> Self {
+        self.max(Self::lit(lo)).min(Self::lit(hi))
+    }
+}
+
+impl Mask for bool {
+    #[inline(always)]
+    fn splat(value: bool) -> bool {
+        value
+    }
+    #[inline(always)]
+    fn any(self) -> bool {
+        self
+    }
+    #[inline(always)]
+    fn all(self) -> bool {
+        self
+    }
+}
+
+macro_rules! scalar_real {
+    ($t:ty, $narrow:ident, $precision:ident, $sign:expr, $magic:expr) => {
+        impl Real for $t {
+            type Mask = bool;
+            type Int = u32;
+            const PRECISION: Precision = Precision::$precision;
+            const ZERO: $t = 0.0;
+            const ONE: $t = 1.0;
+
+            #[inline(always)]
+            fn lit(x: f64) -> $t {
+                x as $t
+            }
+            #[inline(always)]
+            fn sqrt(self) -> $t {
+                wide::$narrow::splat(self).sqrt().to_array()[0]
+            }
+            #[inline(always)]
+            fn abs(self) -> $t {
+                <$t>::from_bits(self.to_bits() & !$sign)
+            }
+            #[inline(always)]
+            fn mul_add(self, a: $t, b: $t) -> $t {
+                wide::$narrow::splat(self).mul_add(wide::$narrow::splat(a), wide::$narrow::splat(b)).to_array()[0]
+            }
+            #[inline(always)]
+            fn min(self, b: $t) -> $t {
+                if self < b { self } else { b }
+            }
+            #[inline(always)]
+            fn max(self, b: $t) -> $t {
+                if self > b { self } else { b }
+            }
+            #[inline(always)]
+            fn copysign(self, sign: $t) -> $t {
+                <$t>::from_bits((self.to_bits() & !$sign) | (sign.to_bits() & $sign))
+            }
+            #[inline(always)]
+            fn lt(self, b: $t) -> bool {
+                self < b
+            }
+            #[inline(always)]
+            fn le(self, b: $t) -> bool {
+                self <= b
+            }
+            #[inline(always)]
+            fn same(self, b: $t) -> bool {
+                self == b
+            }
+            #[inline(always)]
+            fn select(mask: bool, yes: $t, no: $t) -> $t {
+                if mask { yes } else { no }
+            }
+            #[inline(always)]
+            fn round_to_int(self) -> ($t, u32) {
+                // Adding 1.5·2^(p−1) leaves the integer in the low bits of the sum: no cast, no SSE4.1.
+                let shifted = self + $magic;
+                (shifted - $magic, (shifted.to_bits() & 0x3f_ffff) as u32)
+            }
+            #[inline(always)]
+            fn int(x: u32) -> u32 {
+                x
+            }
+            #[inline(always)]
+            fn int_bit(x: u32, bit: u32) -> bool {
+                x & 1_u32.wrapping_shl(bit) != 0
+            }
+            #[inline(always)]
+            fn int_same(x: u32, y: u32) -> bool {
+                x == y
+            }
+            #[inline(always)]
+            fn int_select(mask: bool, yes: u32, no: u32) -> u32 {
+                if mask { yes } else { no }
+            }
+        }
+    };
+}
+scalar_real!(f32, f32x4, Single, 0x8000_0000_u32, 12_582_912.0); // 1.5·2²³
+scalar_real!(f64, f64x2, Double, 0x8000_0000_0000_0000_u64, 6_755_399_441_055_744.0); // 1.5·2⁵²

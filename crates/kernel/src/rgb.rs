@@ -1,0 +1,106 @@
+//! A colour of three linear Rec. 709 channels: a reflectance, a radiance, a weight.
+
+use crate::real::Real;
+use core::ops::{Add, AddAssign, Mul};
+
+/// Red, green and blue, linear, Rec. 709 primaries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Rgb<R> {
+    /// Red.
+    pub r: R,
+    /// Green.
+    pub g: R,
+    /// Blue.
+    pub b: R,
+}
+
+impl<R> Rgb<R> {
+    /// (r, g, b)
+    #[inline(always)]
+    pub const fn new(r: R, g: R, b: R) -> Self {
+        Self { r, g, b }
+    }
+    /// `f` of each channel.
+    #[inline(always)]
+    pub fn map<S>(self, mut f: impl FnMut(R) -> S) -> Rgb<S> {
+        Rgb::new(f(self.r), f(self.g), f(self.b))
+    }
+}
+
+impl<R: Real> Rgb<R> {
+    /// The same value in each channel.
+    #[inline(always)]
+    pub fn splat(x: R) -> Self {
+        Self::new(x, x, x)
+    }
+    /// Black.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self::splat(R::ZERO)
+    }
+    /// Y of CIE 1931 for Rec. 709 primaries: 0.2126 r + 0.7152 g + 0.0722 b.
+    #[inline(always)]
+    pub fn luminance(self) -> R {
+        R::lit(0.2126).mul_add(self.r, R::lit(0.7152).mul_add(self.g, R::lit(0.0722) * self.b))
+    }
+    /// The largest channel.
+    #[inline(always)]
+    pub fn largest(self) -> R {
+        self.r.max(self.g).max(self.b)
+    }
+    /// self where `mask`, black elsewhere.
+    #[inline(always)]
+    pub fn or_zero(self, mask: R::Mask) -> Self {
+        self.map(|x| x.or_zero(mask))
+    }
+    /// `yes` where `mask`, `no` elsewhere.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+        Self::new(R::select(mask, yes.r, no.r), R::select(mask, yes.g, no.g), R::select(mask, yes.b, no.b))
+    }
+    /// Whether every channel lies in [lo, hi]; NaN does not.
+    #[inline(always)]
+    pub fn within(self, lo: f64, hi: f64) -> R::Mask {
+        let inside = |x: R| x.ge(R::lit(lo)) & x.le(R::lit(hi));
+        inside(self.r) & inside(self.g) & inside(self.b)
+    }
+}
+
+impl<R: Real> Add for Rgb<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::new(self.r + other.r, self.g + other.g, self.b + other.b)
+    }
+}
+impl<R: Real> AddAssign for Rgb<R> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+impl<R: Real> Mul for Rgb<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self::new(self.r * other.r, self.g * other.g, self.b * other.b)
+    }
+}
+impl<R: Real> Mul<R> for Rgb<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, k: R) -> Self {
+        self.map(|x| x * k)
+    }
+}
+impl<R> From<[R; 3]> for Rgb<R> {
+    fn from([r, g, b]: [R; 3]) -> Self {
+        Self::new(r, g, b)
+    }
+}
+impl<R> From<Rgb<R>> for [R; 3] {
+    fn from(c: Rgb<R>) -> Self {
+        [c.r, c.g, c.b]
+    }
+}

@@ -1,0 +1,78 @@
+//! `Surface`: what a point is made of, as resolved numbers. Textures have been looked up; nothing depends on a direction yet.
+//!
+//! A surface is a list of at most [`MAX_LOBES`] lobes whose contributions add, each times its weight.
+
+use crate::lobe::{AnyLobe, Lobe};
+use crate::real::Real;
+
+/// How many lobes a surface can hold. Base, coat, sheen and transmission are the most that a layered model needs at once.
+pub const MAX_LOBES: usize = 4;
+
+/// The user's roughness in [0, 1]: perceptually about linear, never a width.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Roughness<R>(pub R);
+
+/// The width of a microfacet distribution: α = roughness².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Alpha<R>(pub R);
+
+impl<R: Real> From<Roughness<R>> for Alpha<R> {
+    fn from(roughness: Roughness<R>) -> Self {
+        Alpha(roughness.0 * roughness.0)
+    }
+}
+
+/// A lobe and the factor of its contribution.
+#[derive(Clone, Copy, Debug)]
+pub struct Weighted<R> {
+    /// Factor in [0, 1].
+    pub weight: R,
+    /// The scattering model.
+    pub lobe: AnyLobe<R>,
+}
+
+/// At most [`MAX_LOBES`] weighted lobes. A surface without lobes absorbs everything.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface<R> {
+    lobes: [Option<Weighted<R>>; MAX_LOBES],
+}
+
+impl<R: Real> Surface<R> {
+    /// A surface that absorbs everything.
+    pub const fn black() -> Self {
+        Self { lobes: [None; MAX_LOBES] }
+    }
+
+    /// A surface of one lobe.
+    pub fn of(lobe: impl Into<AnyLobe<R>>) -> Self {
+        Self::black().with(R::ONE, lobe)
+    }
+
+    /// This surface and one lobe more. A lobe beyond [`MAX_LOBES`] is left out: check [`Surface::is_full`] first.
+    pub fn with(mut self, weight: R, lobe: impl Into<AnyLobe<R>>) -> Self {
+        if let Some(slot) = self.lobes.iter_mut().find(|slot| slot.is_none()) {
+            *slot = Some(Weighted { weight, lobe: lobe.into() });
+        }
+        self
+    }
+
+    /// Whether no further lobe fits.
+    pub fn is_full(&self) -> bool {
+        self.lobes.iter().all(Option::is_some)
+    }
+
+    /// The lobes in order.
+    #[inline(always)]
+    pub fn lobes(&self) -> impl Iterator<Item = &Weighted<R>> {
+        self.lobes.iter().map_while(Option::as_ref)
+    }
+
+    /// Whether every weight and parameter lies in its domain.
+    #[inline(always)]
+    pub fn domain(&self) -> R::Mask {
+        use crate::real::Mask;
+        self.lobes().fold(R::Mask::splat(true), |ok, l| {
+            ok & l.weight.ge(R::ZERO) & l.weight.le(R::ONE) & l.lobe.domain()
+        })
+    }
+}

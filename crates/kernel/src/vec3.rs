@@ -1,0 +1,147 @@
+//! A vector of three reals: a direction, a point or a displacement, in whichever frame the caller keeps it.
+
+use crate::real::Real;
+use core::ops::{Add, Mul, Neg, Sub};
+
+/// Three reals. `Vec3<f32>` is 12 bytes, `repr(C)`, and converts from and to `[f32; 3]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Vec3<R> {
+    /// Along the first axis (in the local frame: the tangent).
+    pub x: R,
+    /// Along the second axis (in the local frame: the bitangent).
+    pub y: R,
+    /// Along the third axis (in the local frame: the shading normal).
+    pub z: R,
+}
+
+impl<R> Vec3<R> {
+    /// (x, y, z)
+    #[inline(always)]
+    pub const fn new(x: R, y: R, z: R) -> Self {
+        Self { x, y, z }
+    }
+}
+
+impl<R: Real> Vec3<R> {
+    /// The same number in all three components.
+    #[inline(always)]
+    pub fn splat(x: R) -> Self {
+        Self::new(x, x, x)
+    }
+    /// The unit vector (0, 0, 1): the normal of the local frame.
+    #[inline(always)]
+    pub fn unit_z() -> Self {
+        Self::new(R::ZERO, R::ZERO, R::ONE)
+    }
+    /// self · other
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> R {
+        self.x.mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))
+    }
+    /// self × other, unfused, so that `a.cross(b)` is exactly `-b.cross(a)`.
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> Self {
+        Self::new(
+            self.y * other.z - self.z * other.y,
+            self.z * other.x - self.x * other.z,
+            self.x * other.y - self.y * other.x,
+        )
+    }
+    /// self · self
+    #[inline(always)]
+    pub fn length2(self) -> R {
+        self.dot(self)
+    }
+    /// |self|
+    #[inline(always)]
+    pub fn length(self) -> R {
+        self.length2().sqrt()
+    }
+    /// self / |self|; not finite for the zero vector and outside about 1e±19 in `f32`.
+    #[inline(always)]
+    pub fn normalize(self) -> Self {
+        self * self.length().recip()
+    }
+    /// The unit vector along self for any finite non-zero self, denormal or huge; `fallback` for zero, NaN and infinities.
+    #[inline(always)]
+    pub fn normalize_or(self, fallback: Self) -> Self {
+        let largest = self.x.abs().max(self.y.abs()).max(self.z.abs());
+        // Two steps keep the scale finite: 1/denormal would overflow.
+        let lift = R::select(largest.lt(R::lit(1e-30)), R::lit(1e30), R::ONE);
+        let scaled = self * lift * (largest * lift).recip();
+        let unit = scaled.normalize();
+        let ok = self.is_finite() & largest.gt(R::ZERO) & unit.is_finite();
+        Self::select(ok, unit, fallback)
+    }
+    /// Each component multiplied by the like component.
+    #[inline(always)]
+    pub fn mul_each(self, other: Self) -> Self {
+        Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
+    }
+    /// The absolute value of each component.
+    #[inline(always)]
+    pub fn abs(self) -> Self {
+        Self::new(self.x.abs(), self.y.abs(), self.z.abs())
+    }
+    /// self + t·dir
+    #[inline(always)]
+    pub fn along(self, t: R, dir: Self) -> Self {
+        Self::new(t.mul_add(dir.x, self.x), t.mul_add(dir.y, self.y), t.mul_add(dir.z, self.z))
+    }
+    /// `yes` where `mask`, `no` elsewhere.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+        Self::new(R::select(mask, yes.x, no.x), R::select(mask, yes.y, no.y), R::select(mask, yes.z, no.z))
+    }
+    /// Whether all three components are finite.
+    #[inline(always)]
+    pub fn is_finite(self) -> R::Mask {
+        self.x.is_finite() & self.y.is_finite() & self.z.is_finite()
+    }
+    /// Whether self is a direction in the kernel's domain: finite and | |self|² − 1 | ≤ 1e-3.
+    #[inline(always)]
+    pub fn is_direction(self) -> R::Mask {
+        // A NaN or an infinity makes the difference NaN or infinite, and both fail the comparison.
+        (self.length2() - R::ONE).abs().le(R::lit(1e-3))
+    }
+}
+
+impl<R: Real> Add for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
+    }
+}
+impl<R: Real> Sub for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
+    }
+}
+impl<R: Real> Neg for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y, -self.z)
+    }
+}
+impl<R: Real> Mul<R> for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, k: R) -> Self {
+        Self::new(self.x * k, self.y * k, self.z * k)
+    }
+}
+impl<R> From<[R; 3]> for Vec3<R> {
+    fn from([x, y, z]: [R; 3]) -> Self {
+        Self::new(x, y, z)
+    }
+}
+impl<R> From<Vec3<R>> for [R; 3] {
+    fn from(v: Vec3<R>) -> Self {
+        [v.x, v.y, v.z]
+    }
+}

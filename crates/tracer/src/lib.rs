@@ -1,0 +1,1 @@
+//! The path tracer of Gonio: scene in, image out

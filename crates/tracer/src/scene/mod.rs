@@ -1,0 +1,186 @@
+//! The scene: everything a picture depends on, as plain data.
+//!
+//! A scene comes from a TOML scene file (`docs/scene-format.md` lists every key with its unit and default) or from an
+//! OBJ file alone, which then gets an automatic camera and a white sky. Whatever leaves this module is checked: all
+//! numbers are finite and in their ranges, all indices point at something, every mesh has a triangle with an area.
+//! Bad input is a [`SceneError`] that names file and line; what a viewer would tolerate is loaded with a sentence in
+//! [`Scene::warnings`].
+
+use std::path::Path;
+
+use glam::{DAffine3, DVec3};
+use gonio_kernel::Rgb;
+
+use crate::texture::Texture;
+
+mod error;
+
+pub use error::SceneError;
+
+/// A scene, checked and ready to be planned and rendered.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Size of the picture and number of samples.
+    pub film: FilmSettings,
+    /// The pinhole camera.
+    pub camera: Camera,
+    /// Path length and random numbers.
+    pub integrator: IntegratorSettings,
+    /// Materials; a mesh names them by index. Never more than 65535.
+    pub materials: Vec<Material>,
+    /// Decoded images; [`Color::Texture`] names them by index.
+    pub textures: Vec<Texture>,
+    /// Triangle meshes, each in its own coordinates. Never empty.
+    pub meshes: Vec<Mesh>,
+    /// Meshes placed in the world. Never empty.
+    pub instances: Vec<Instance>,
+    /// Radiance of the constant environment, linear Rec. 709, at least 0; 0 means there is none.
+    pub environment: Rgb<f32>,
+    /// What was loaded differently from how it was written: one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Size of the picture and number of samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilmSettings {
+    /// Pixels per row, 1 to 65536.
+    pub width: u32,
+    /// Rows, 1 to 65536.
+    pub height: u32,
+    /// Samples per pixel, 1 to 2²⁰.
+    pub spp: u32,
+    /// Exposure in stops (factor 2ˣ), applied to the PNG only.
+    pub exposure: f32,
+}
+
+/// A pinhole camera. `up` is not parallel to the view direction, and `target` is not `origin`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Position, in metres.
+    pub origin: DVec3,
+    /// A point that appears at the centre of the picture, in metres.
+    pub target: DVec3,
+    /// Points towards the top of the picture; any length above 0.
+    pub up: DVec3,
+    /// Vertical field of view in degrees, above 0 and below 180.
+    pub vfov: f64,
+}
+
+/// Path length and random numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct IntegratorSettings {
+    /// Number of scattering events after which a path ends; emission seen directly is depth 0.
+    pub max_depth: u32,
+    /// Whether paths that carry little end early by chance (unbiased).
+    pub russian_roulette: bool,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
+/// A surface: the sum of its lobes, and its own light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// The name it has in the scene or MTL file.
+    pub name: String,
+    /// One to four lobes, whose contributions add.
+    pub lobes: Vec<LobeSpec>,
+    /// Emitted radiance, linear Rec. 709, at least 0; leaves from the front of the winding.
+    pub emission: Rgb<f32>,
+    /// Whether the back scatters like the front; a one-sided material is black from behind.
+    pub two_sided: bool,
+}
+
+/// A lobe and its share.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LobeSpec {
+    /// Factor on the lobe's reflected light, in [0, 1].
+    pub weight: f32,
+    /// What it does with light.
+    pub model: Model,
+}
+
+/// The reflection models a scene can name.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Model {
+    /// Lambert's law.
+    Diffuse {
+        /// Albedo, each channel in [0, 1].
+        base_color: Color,
+    },
+    /// A perfectly smooth mirror.
+    Mirror {
+        /// Reflectance at every angle, each channel in [0, 1].
+        reflectance: Color,
+    },
+    /// A rough metal (GGX microfacets).
+    Conductor {
+        /// What one facet reflects.
+        fresnel: FresnelSpec,
+        /// Width along the tangent, in [1e-4, 1].
+        alpha_x: f32,
+        /// Width along the bitangent, in [1e-4, 1].
+        alpha_y: f32,
+    },
+}
+
+/// Reflectance of a facet against angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FresnelSpec {
+    /// A metal's complex index of refraction per channel.
+    Conductor {
+        /// Index of refraction, above 0.
+        eta: Rgb<f32>,
+        /// Extinction coefficient, at least 0.
+        k: Rgb<f32>,
+    },
+    /// Schlick's approximation, rising to 1 at grazing.
+    Schlick {
+        /// Reflectance at normal incidence, each channel in [0, 1].
+        f0: Rgb<f32>,
+    },
+}
+
+/// A colour that is the same everywhere or comes from an image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Color {
+    /// The same everywhere, linear Rec. 709.
+    Constant(Rgb<f32>),
+    /// Read from an image at the hit's texture coordinates.
+    Texture {
+        /// Index into [`Scene::textures`].
+        texture: usize,
+        /// Factor on the image, each channel in [0, 1].
+        scale: Rgb<f32>,
+    },
+}
+
+/// A triangle mesh in its own coordinates.
+///
+/// `positions`, `normals` and `uvs` have one entry per vertex; `triangles` index them, counter-clockwise seen from the
+/// front. Positions are f64 because georeferenced data needs it: the renderer moves the origin before it rounds to f32.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// The file's name, for messages.
+    pub name: String,
+    /// Vertex positions, finite.
+    pub positions: Vec<[f64; 3]>,
+    /// Unit shading normals per vertex; without them the geometric normal is used.
+    pub normals: Option<Vec<[f32; 3]>>,
+    /// Texture coordinates per vertex, finite, v = 0 at the bottom of the image.
+    pub uvs: Option<Vec<[f32; 2]>>,
+    /// Vertex indices of each triangle; no triangle has zero area.
+    pub triangles: Vec<[u32; 3]>,
+    /// Index into [`Scene::materials`] for each triangle.
+    pub materials: Vec<u32>,
+}
+
+/// A mesh placed in the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instance {
+    /// The mesh's name, for messages.
+    pub name: String,
+    /// Index into [`Scene::meshes`].
+    pub mesh: usize,
+    /// From mesh to world coordinates (metres); invertible.
+    pub transform: DAffine3,
+}
