@@ -8,7 +8,7 @@ absolute figures are not. Only rendering is timed: neither loading, nor compilin
     cargo build --release
     DRJIT_LIBLLVM_PATH=<libLLVM 19> python benches/peers.py --gonio target/release/gonio [--rounds 5] [--spp 32]
 
-Without --gonio only Mitsuba is timed.
+Without --gonio only Mitsuba is timed. Older versions of LLVM abort while they compile its kernel.
 """
 
 import argparse
@@ -56,7 +56,8 @@ class Gonio:
     def __init__(self, binary, spp):
         self.binary, self.spp = Path(binary).resolve(), spp
 
-    def msamples_per_second(self, seed):  # noqa: ARG002 (the scene's seed: the work is the same)
+    def msamples_per_second(self, seed):
+        del seed  # Gonio takes none; the work is the same each time
         with tempfile.TemporaryDirectory() as scratch:
             stats = Path(scratch) / "stats.json"
             subprocess.run(

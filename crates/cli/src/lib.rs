@@ -1,1 +1,67 @@
-//! The command line of Gonio
+//! The command line of Gonio: `gonio render`, `gonio bsdf` and `gonio validate`.
+//!
+//! One file per subcommand, and no physics: scenes and pictures belong to `gonio-tracer`, scattering to `gonio-kernel`,
+//! its instruments to `gonio-lab`. What is here reads arguments, hands them on, and writes what comes back.
+//!
+//! Results go to files or standard output, everything else (warnings, progress, errors) to standard error. A file appears
+//! whole or not at all. Exit codes: 0 success; 1 an error; 2 wrong usage; 3 a check of the validation failed.
+#![forbid(unsafe_code)]
+
+mod bsdf;
+mod cpu;
+mod output;
+mod random;
+mod render;
+mod usage;
+mod validate;
+
+pub use cpu::missing_instructions;
+
+use clap::{Parser, Subcommand};
+use std::io;
+use std::process::ExitCode;
+
+const EXIT_CODES: &str = "Exit codes: 0 success; 1 an error; 2 wrong usage; 3 a check of the validation failed.";
+
+/// A reflectance kernel that can be trusted, and the eight-wide path tracer that proves it.
+#[derive(Parser)]
+#[command(name = "gonio", version, after_help = EXIT_CODES, subcommand_required = true, arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Render(render::Args),
+    Bsdf(bsdf::Args),
+    Validate(validate::Args),
+}
+
+/// Runs the command line of this process.
+pub fn run() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version also come this way, with exit code 0. If they cannot be printed, nothing can.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    let result = match cli.command {
+        Command::Render(args) => render::run(&args),
+        Command::Bsdf(args) => bsdf::run(&args),
+        Command::Validate(args) => validate::run(&args),
+    };
+    result.unwrap_or_else(|error| {
+        if is_closed_pipe(&error) {
+            return ExitCode::SUCCESS; // the reader has seen enough, as in `gonio bsdf sample … | head`
+        }
+        eprintln!("error: {error:#}");
+        ExitCode::from(if error.is::<usage::Usage>() { 2 } else { 1 })
+    })
+}
+
+fn is_closed_pipe(error: &anyhow::Error) -> bool {
+    error.chain().filter_map(|cause| cause.downcast_ref::<io::Error>()).any(|e| e.kind() == io::ErrorKind::BrokenPipe)
+}

@@ -1,2 +1,13 @@
-//! x
-fn main() {}
+//! The `gonio` program: checks the processor, then runs the command line.
+#![forbid(unsafe_code)]
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    // First of all: on an older processor anything else may end in an illegal instruction.
+    if let Some(sentence) = gonio_cli::missing_instructions() {
+        eprintln!("error: {sentence}");
+        return ExitCode::FAILURE;
+    }
+    gonio_cli::run()
+}

@@ -60,7 +60,7 @@ impl<R: Real> Frame<R> {
 /// Two unit vectors that make a right-handed basis with the unit vector `z`. The sign bit of z.z decides the branch, so
 /// that −0 is handled like the southern hemisphere and 1/(sign + z.z) is never larger than 1.
 #[inline(always)]
-fn tangents<R: Real>(z: Vec3<R>) -> (Vec3<R>, Vec3<R>) {
+pub fn tangents<R: Real>(z: Vec3<R>) -> (Vec3<R>, Vec3<R>) {
     let sign = R::ONE.copysign(z.z);
     let a = -(sign + z.z).recip();
     let b = z.x * z.y * a;

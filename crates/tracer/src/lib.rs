@@ -1,1 +1,48 @@
-//! The path tracer of Gonio: scene in, image out
+//! The path tracer of Gonio: scene in, image out.
+//!
+//! The modules, in the order in which data flows through them:
+//!
+//! [`scene`] (files to plain data) → [`world`] (placed, recentred, with [`Plan`] and lights) → a [`Backend`] casts its rays
+//! → [`render`] drives queues of path states through generate, closest hit, sort, shade and shadow stages → the film adds
+//! samples as integers → [`image`] writes the picture.
+//!
+//! ```no_run
+//! use gonio_tracer::{Backend, RenderSettings, World, render, scene::Scene};
+//!
+//! let scene = Scene::load("scenes/cornell-box.toml".as_ref())?;
+//! let world = World::new(&scene)?;
+//! let accel = Backend::Obvhs.build(world.geometry());
+//! let rendering = render(&world, &*accel, &RenderSettings::of(&scene, &world), &mut |_| ());
+//! println!("{}", rendering.stats.film_hash);
+//! # Ok::<(), gonio_tracer::scene::SceneError>(())
+//! ```
+#![forbid(unsafe_code)]
+
+#[cfg(all(target_arch = "x86_64", not(all(target_feature = "avx2", target_feature = "fma"))))]
+compile_error!(
+    "gonio-tracer needs AVX2 and FMA on x86-64: build inside the repository, whose .cargo/config.toml sets them, \
+     or with RUSTFLAGS=\"-C target-cpu=x86-64-v3\""
+);
+
+mod backend;
+mod film;
+pub mod image;
+mod light;
+mod material;
+mod plan;
+mod point;
+mod queue;
+mod render;
+mod sampler;
+pub mod scene;
+mod shade;
+mod stats;
+pub mod texture;
+pub mod world;
+
+pub use backend::Backend;
+pub use material::constant_surface;
+pub use plan::Plan;
+pub use render::{Crop, Progress, RenderSettings, Rendering, render};
+pub use stats::{LargeSample, RenderStats};
+pub use world::World;

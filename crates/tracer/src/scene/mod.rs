@@ -13,9 +13,57 @@ use gonio_kernel::Rgb;
 
 use crate::texture::Texture;
 
+mod build;
+mod camera;
+mod document;
 mod error;
+mod file;
+mod material;
+mod mtl;
+mod obj;
+mod paths;
+mod textures;
+mod transform;
 
 pub use error::SceneError;
+
+/// Smallest microfacet width: below it, f32 cannot resolve the lobe, and a mirror is what is meant.
+pub(crate) const MIN_ALPHA: f32 = 1e-4;
+/// Largest radiance a material or the environment may have: the film's range ends a little above.
+pub(crate) const MAX_RADIANCE: f64 = 1e6;
+
+impl Scene {
+    /// Reads a scene file (`.toml`), or an OBJ file alone (`.obj`) under a white sky with an automatic camera.
+    ///
+    /// # Errors
+    /// Anything that cannot be rendered as written, with file and line.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+        match extension.to_ascii_lowercase().as_str() {
+            "toml" => Self::from_toml_str(&paths::read_text(path)?, path),
+            "obj" => Self::from_obj(path),
+            _ => Err(SceneError::file(path, "is neither a scene file (.toml) nor an OBJ file (.obj)")),
+        }
+    }
+
+    /// Reads a scene file from its text; files it names are looked for beside `path`.
+    ///
+    /// # Errors
+    /// Anything that cannot be rendered as written, with file and line.
+    pub fn from_toml_str(text: &str, path: &Path) -> Result<Self, SceneError> {
+        file::read(text, path)
+    }
+
+    fn from_obj(path: &Path) -> Result<Self, SceneError> {
+        let mut builder = build::Builder::default();
+        let blame = |why: String| SceneError::at(path, 1, why);
+        builder.place(path, &build::Assignment::default(), DAffine3::IDENTITY, blame)?;
+        let film = FilmSettings::default();
+        let aspect = f64::from(film.width) / f64::from(film.height);
+        let camera = camera::CameraSpec::default().complete(builder.bounds, aspect).map_err(blame)?;
+        Ok(builder.finish(film, camera, IntegratorSettings::default(), Rgb::splat(1.0)))
+    }
+}
 
 /// A scene, checked and ready to be planned and rendered.
 #[derive(Clone, Debug)]

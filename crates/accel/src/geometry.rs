@@ -1,0 +1,163 @@
+//! What rays are cast at: triangle meshes, and instances that place them in the world.
+//!
+//! A mesh keeps `f32` positions in its own coordinates; an instance places it by an affine map in `f64`. World vertices are
+//! formed in `f64` and rounded once, here and nowhere else, so that every backend and the shading see the same bits.
+
+use gonio_kernel::Vec3;
+use thiserror::Error;
+
+/// Triangles over shared vertices, in the mesh's own coordinates.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Vertex positions.
+    pub positions: Vec<[f32; 3]>,
+    /// Three vertex indices per triangle; counter-clockwise from the front.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// A mesh placed in the world.
+#[derive(Clone, Copy, Debug)]
+pub struct Instance {
+    /// Which mesh.
+    pub mesh: u32,
+    /// Rows of the map [M | t]: world = M·local + t.
+    pub transform: [[f64; 4]; 3],
+}
+
+/// Why a geometry was refused.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum GeometryError {
+    /// An instance names a mesh that is not there.
+    #[error("instance {instance} names mesh {mesh}, but there are only {meshes}")]
+    NoSuchMesh {
+        /// The instance.
+        instance: usize,
+        /// The mesh it names.
+        mesh: u32,
+        /// How many there are.
+        meshes: usize,
+    },
+    /// A triangle names a vertex that is not there.
+    #[error("triangle {triangle} of mesh {mesh} names vertex {vertex}, but there are only {vertices}")]
+    NoSuchVertex {
+        /// The mesh.
+        mesh: usize,
+        /// The triangle.
+        triangle: usize,
+        /// The vertex it names.
+        vertex: u32,
+        /// How many there are.
+        vertices: usize,
+    },
+    /// A vertex is NaN or infinite in the world, or farther than 1e18 from the origin, where products overflow.
+    #[error("vertex {vertex} of instance {instance} lies outside of what f32 rays can reach")]
+    NotFinite {
+        /// The instance.
+        instance: usize,
+        /// The vertex.
+        vertex: usize,
+    },
+    /// More triangles than a 32-bit index can name.
+    #[error("{0} triangles are more than the 2^31 that can be indexed")]
+    TooMany(usize),
+}
+
+/// Meshes and instances, checked.
+#[derive(Clone, Debug)]
+pub struct Geometry {
+    meshes: Vec<Mesh>,
+    instances: Vec<Instance>,
+}
+
+impl Instance {
+    /// The mesh where it is.
+    pub const IDENTITY: [[f64; 4]; 3] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+
+    /// The world position of a point of the mesh.
+    pub fn to_world(&self, p: [f32; 3]) -> [f32; 3] {
+        let [x, y, z] = p.map(f64::from);
+        self.transform.map(|[a, b, c, t]| (a * x + b * y + c * z + t) as f32)
+    }
+}
+
+impl Geometry {
+    /// Checks indices, finiteness and counts.
+    ///
+    /// # Errors
+    /// See [`GeometryError`].
+    pub fn new(meshes: Vec<Mesh>, instances: Vec<Instance>) -> Result<Self, GeometryError> {
+        for (m, mesh) in meshes.iter().enumerate() {
+            for (t, triangle) in mesh.triangles.iter().enumerate() {
+                if let Some(&vertex) = triangle.iter().find(|&&v| v as usize >= mesh.positions.len()) {
+                    let vertices = mesh.positions.len();
+                    return Err(GeometryError::NoSuchVertex { mesh: m, triangle: t, vertex, vertices });
+                }
+            }
+        }
+        let mut count = 0_usize;
+        for (i, instance) in instances.iter().enumerate() {
+            let Some(mesh) = meshes.get(instance.mesh as usize) else {
+                return Err(GeometryError::NoSuchMesh { instance: i, mesh: instance.mesh, meshes: meshes.len() });
+            };
+            let reachable = |p: &[f32; 3]| instance.to_world(*p).iter().all(|x| x.abs() < 1e18);
+            if let Some(vertex) = mesh.positions.iter().position(|p| !reachable(p)) {
+                return Err(GeometryError::NotFinite { instance: i, vertex });
+            }
+            count = count.saturating_add(mesh.triangles.len());
+        }
+        if count >= 1 << 31 {
+            return Err(GeometryError::TooMany(count));
+        }
+        Ok(Self { meshes, instances })
+    }
+
+    /// One mesh, where it is.
+    ///
+    /// # Errors
+    /// See [`GeometryError`].
+    pub fn of_mesh(mesh: Mesh) -> Result<Self, GeometryError> {
+        Self::new(vec![mesh], vec![Instance { mesh: 0, transform: Instance::IDENTITY }])
+    }
+
+    /// The meshes.
+    pub fn meshes(&self) -> &[Mesh] {
+        &self.meshes
+    }
+
+    /// The instances.
+    pub fn instances(&self) -> &[Instance] {
+        &self.instances
+    }
+
+    /// All triangles of all instances in the world, in the order (instance, prim).
+    pub fn world_triangles(&self) -> impl Iterator<Item = WorldTriangle> {
+        self.instances.iter().enumerate().flat_map(|(i, instance)| {
+            let mesh = &self.meshes[instance.mesh as usize];
+            let corner = |v: u32| instance.to_world(mesh.positions[v as usize]).into();
+            mesh.triangles.iter().enumerate().map(move |(prim, t)| WorldTriangle {
+                corners: t.map(corner),
+                id: TriangleId { prim: prim as u32, mesh: instance.mesh, instance: i as u32 },
+            })
+        })
+    }
+}
+
+/// A triangle in the world.
+#[derive(Clone, Copy, Debug)]
+pub struct WorldTriangle {
+    /// Its vertices.
+    pub corners: [Vec3<f32>; 3],
+    /// Where it comes from.
+    pub id: TriangleId,
+}
+
+/// Where a triangle comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TriangleId {
+    /// Triangle within the mesh.
+    pub prim: u32,
+    /// Mesh within the geometry.
+    pub mesh: u32,
+    /// Instance within the geometry.
+    pub instance: u32,
+}

@@ -1,0 +1,72 @@
+//! Every free function of the kernel, for every number, as a function of its own: `sin_cos_turns_f32` and so on.
+//!
+//! `cargo xtask no-std` reads the kernel's sources for `pub fn name<R: Real>` and expects each name here.
+
+use crate::{direction, some};
+use core::hint::black_box;
+use gonio_kernel::{F32x8, Real, Vec3, frame, fresnel, math, warp};
+
+/// An argument that the optimiser knows nothing about.
+trait Unknown {
+    fn unknown() -> Self;
+}
+impl<R: Real> Unknown for Vec3<R> {
+    fn unknown() -> Self {
+        direction(0.6, 0.0, 0.8)
+    }
+}
+impl<R: Real> Unknown for [R; 2] {
+    fn unknown() -> Self {
+        [some(0.2), some(0.7)]
+    }
+}
+macro_rules! unknown_number {
+    ($($real:ident)*) => {$(
+        impl Unknown for $real {
+            fn unknown() -> Self {
+                some(0.3)
+            }
+        }
+    )*};
+}
+unknown_number!(f32 f64 F32x8);
+
+macro_rules! export {
+    ($real:ident: $($module:ident::$name:ident($($arg:ident: $type:ty),*) -> $out:ty;)*) => {$({
+        #[unsafe(export_name = concat!(stringify!($name), "_", stringify!($real)))]
+        #[inline(never)]
+        fn exported($($arg: $type),*) -> $out {
+            $module::$name($($arg),*)
+        }
+        black_box(exported($(<$type>::unknown()),*));
+    })*};
+}
+
+macro_rules! functions {
+    ($real:ident) => {{
+        type R = $real;
+        type Truth = <R as Real>::Mask;
+        export! { $real:
+            frame::tangents(z: Vec3<R>) -> (Vec3<R>, Vec3<R>);
+            frame::cos_theta(w: Vec3<R>) -> R;
+            frame::sin2_theta(w: Vec3<R>) -> R;
+            frame::both_above(wo: Vec3<R>, wi: Vec3<R>) -> Truth;
+            fresnel::dielectric(cos_o: R, eta: R) -> R;
+            fresnel::conductor(cos_o: R, eta: R, k: R) -> R;
+            fresnel::schlick(cos_o: R, f0: R) -> R;
+            math::sin_cos_turns(u: R) -> (R, R);
+            warp::sample_cosine_hemisphere(u: [R; 2]) -> Vec3<R>;
+            warp::pdf_cosine_hemisphere(w: Vec3<R>) -> R;
+            warp::sample_uniform_sphere(u: [R; 2]) -> Vec3<R>;
+            warp::pdf_uniform_sphere() -> R;
+            warp::sample_uniform_triangle(u: [R; 2]) -> [R; 2];
+            warp::pdf_uniform_triangle() -> R;
+        }
+    }};
+}
+
+pub(crate) fn prove() {
+    functions!(f32);
+    functions!(f64);
+    functions!(F32x8);
+}

@@ -1,0 +1,92 @@
+//! Every method of every lobe, for every number, as a function of its own: `Conductor_eval_f32` and so on.
+//!
+//! The lobes are those of the kernel's own table. A lobe without an [`Example`] here does not compile.
+
+use crate::{colour, direction, some};
+use core::hint::black_box;
+use gonio_kernel::fresnel::Fresnel;
+use gonio_kernel::lobe::{AnyLobe, Conductor, Lambert, Mirror};
+use gonio_kernel::microfacet::Ggx;
+use gonio_kernel::{Event, F32x8, Lobe, Real, Rgb, Sample, Value, Vec3, for_each_lobe};
+
+/// A lobe with parameters that the optimiser knows nothing about.
+pub(crate) trait Example {
+    fn example() -> Self;
+}
+
+impl<R: Real> Example for Lambert<R> {
+    #[inline(always)]
+    fn example() -> Self {
+        Self::new(colour(0.8))
+    }
+}
+impl<R: Real> Example for Mirror<R> {
+    #[inline(always)]
+    fn example() -> Self {
+        Self::new(colour(0.9))
+    }
+}
+impl<R: Real> Example for Conductor<R> {
+    #[inline(always)]
+    fn example() -> Self {
+        let fresnel = if black_box(true) {
+            Fresnel::Conductor { eta: colour(0.2), k: colour(3.9) }
+        } else {
+            Fresnel::Schlick { f0: colour(0.7) }
+        };
+        Self::new(Ggx { alpha_x: some(0.3), alpha_y: some(0.1) }, fresnel)
+    }
+}
+
+macro_rules! prove_lobes {
+    ($($lobe:ident),*) => {
+        pub(crate) fn prove() {
+            $( prove_lobe!($lobe, f32); prove_lobe!($lobe, f64); prove_lobe!($lobe, F32x8); )*
+        }
+
+        /// One of each.
+        #[inline(always)]
+        pub(crate) fn examples<R: Real>() -> [AnyLobe<R>; [$(stringify!($lobe)),*].len()] {
+            [$( AnyLobe::$lobe($lobe::example()) ),*]
+        }
+    };
+}
+
+macro_rules! prove_lobe {
+    ($lobe:ident, $real:ident) => {{
+        #[unsafe(export_name = concat!(stringify!($lobe), "_eval_", stringify!($real)))]
+        #[inline(never)]
+        fn eval(lobe: &$lobe<$real>, wo: Vec3<$real>, wi: Vec3<$real>) -> Value<$real> {
+            lobe.eval(wo, wi)
+        }
+        #[unsafe(export_name = concat!(stringify!($lobe), "_sample_", stringify!($real)))]
+        #[inline(never)]
+        fn sample(lobe: &$lobe<$real>, wo: Vec3<$real>, u: [$real; 3]) -> Sample<$real> {
+            lobe.sample(wo, u)
+        }
+        #[unsafe(export_name = concat!(stringify!($lobe), "_discrete_", stringify!($real)))]
+        #[inline(never)]
+        fn discrete(lobe: &$lobe<$real>, wo: Vec3<$real>, event: &Event<$real>) -> Value<$real> {
+            lobe.discrete(wo, event)
+        }
+        #[unsafe(export_name = concat!(stringify!($lobe), "_albedo_estimate_", stringify!($real)))]
+        #[inline(never)]
+        fn albedo_estimate(lobe: &$lobe<$real>, wo: Vec3<$real>) -> Rgb<$real> {
+            lobe.albedo_estimate(wo)
+        }
+        #[unsafe(export_name = concat!(stringify!($lobe), "_domain_", stringify!($real)))]
+        #[inline(never)]
+        fn domain(lobe: &$lobe<$real>) -> <$real as Real>::Mask {
+            Lobe::<$real>::domain(lobe)
+        }
+        let lobe = black_box($lobe::<$real>::example());
+        let (wo, wi) = (direction(0.6, 0.0, 0.8), direction(0.0, -0.6, 0.8));
+        black_box(eval(&lobe, wo, wi));
+        let sample = black_box(sample(&lobe, wo, [some(0.1), some(0.5), some(0.9)]));
+        black_box(discrete(&lobe, wo, &sample.event));
+        black_box(albedo_estimate(&lobe, wo));
+        black_box(domain(&lobe));
+    }};
+}
+
+for_each_lobe!(prove_lobes);

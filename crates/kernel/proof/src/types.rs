@@ -1,0 +1,78 @@
+//! The types that carry state, each with its methods in one function per number: `Closure_f32`, `Frame_f32` and so on.
+
+use crate::{colour, direction, lobes, some};
+use core::hint::black_box;
+use gonio_kernel::lobe::AnyLobe;
+use gonio_kernel::units::{Area, Flux, Radiance, SolidAngle};
+use gonio_kernel::{
+    Closure, Event, F32x8, Frame, Mask, Mask8, Rgb, Sample, Surface, U32x8, Value, Vec3, closure::Unguarded,
+};
+
+macro_rules! types {
+    ($real:ident) => {{
+        type R = $real;
+
+        #[unsafe(export_name = concat!("Surface_", stringify!($real)))]
+        #[inline(never)]
+        fn surface(weight: R, lobes: &[AnyLobe<R>]) -> (Surface<R>, bool) {
+            let surface = lobes.iter().fold(Surface::black(), |surface, &lobe| surface.with(weight, lobe));
+            (surface, surface.is_full())
+        }
+
+        #[unsafe(export_name = concat!("Closure_", stringify!($real)))]
+        #[inline(never)]
+        fn closure(surface: &Surface<R>, wo: Vec3<R>, wi: Vec3<R>, u: [R; 3]) -> (Value<R>, Sample<R>, Value<R>) {
+            let closure = Closure::new(surface, wo);
+            let sample = closure.sample(u);
+            (closure.eval(wi), sample, closure.discrete(&sample.event))
+        }
+
+        #[unsafe(export_name = concat!("Unguarded_", stringify!($real)))]
+        #[inline(never)]
+        fn unguarded(surface: &Surface<R>, wo: Vec3<R>, wi: Vec3<R>, event: &Event<R>) -> (Value<R>, Value<R>) {
+            let mixture = Unguarded::new(surface, wo);
+            (mixture.eval(wi), mixture.discrete(event))
+        }
+
+        #[unsafe(export_name = concat!("Frame_", stringify!($real)))]
+        #[inline(never)]
+        fn frame(n: Vec3<R>, tangent: Vec3<R>, v: Vec3<R>) -> (Vec3<R>, Vec3<R>) {
+            (Frame::from_normal(n).to_local(v), Frame::from_normal_tangent(n, tangent).to_world(v))
+        }
+
+        #[unsafe(export_name = concat!("Rgb_", stringify!($real)))]
+        #[inline(never)]
+        fn rgb(a: Rgb<R>, b: Rgb<R>) -> (R, R) {
+            (Rgb::select(a.within(0.0, 1.0), a, b).luminance(), (a + b * a).largest())
+        }
+
+        #[unsafe(export_name = concat!("units_", stringify!($real)))]
+        #[inline(never)]
+        fn units(x: Flux<R>, omega: SolidAngle<R>, area: Area<R>, l: Radiance<Rgb<R>>) -> (R, R, R) {
+            ((x / omega).0, (x / area).0, l.photometric().0)
+        }
+
+        let (wo, wi) = (direction(0.6, 0.0, 0.8), direction(0.0, -0.6, 0.8));
+        let (surface, _) = black_box(surface(some(0.3), black_box(&lobes::examples())));
+        let (_, sample, _) = black_box(closure(&surface, wo, wi, [some(0.1), some(0.5), some(0.9)]));
+        black_box(unguarded(&surface, wo, wi, &sample.event));
+        black_box(frame(wo, wi, direction(1.0, 2.0, 3.0)));
+        black_box(rgb(colour(0.5), colour(0.2)));
+        black_box(units(Flux(some(1.0)), SolidAngle(some(2.0)), Area(some(3.0)), Radiance(colour(0.5))));
+    }};
+}
+
+/// What only lanes have: a count of active lanes and a lane's number are as unknown as any input.
+#[unsafe(no_mangle)]
+#[inline(never)]
+fn masks_of_lanes(count: usize, lane: usize, bits: u32) -> (bool, u32, U32x8) {
+    let mask = Mask8::first(count) | Mask8::from_bits(bits);
+    (mask.lane(lane) & mask.any(), mask.to_bits(), U32x8::splat(bits) >> bits)
+}
+
+pub(crate) fn prove() {
+    types!(f32);
+    types!(f64);
+    types!(F32x8);
+    black_box(masks_of_lanes(black_box(5), black_box(9), black_box(77)));
+}

@@ -1,0 +1,142 @@
+//! χ²: are samples distributed as the density says?
+//!
+//! Samples fall into cells of about equal probability that follow the lobe, one bin per discrete event, and one for
+//! failures. Expected counts are N∫pdf over the cells, by adaptive quadrature of the reference; N times the probability of
+//! each discrete event; and what is left of N for failures, so that ∫pdf + Σ p(discrete) + P(failed) = 1 is part of the
+//! test. Pearson's statistic; bins that expect fewer than 25 are pooled, and a pool too small for Pearson gets an exact
+//! Poisson test. How N follows from the fault that is to be found: `statistics.rs`.
+
+use crate::cells::{Cells, USUAL_BINS};
+use crate::check::Effort;
+use crate::directions::views;
+use crate::probe::{Dir, Kind, Worth};
+use crate::random::Random;
+use crate::finding::{Finding, Run};
+use crate::statistics::{FAULT_MASS, FAULT_SIZE, POWER, chi2_p, poisson_p, samples_for, size_found};
+use crate::subject::View;
+
+/// Pearson's approximation is used for bins that expect this many: below, its tail at 10⁻⁵ is too thin.
+const LEAST_EXPECTED: f64 = 25.0;
+
+/// How many samples a run takes per test.
+pub(crate) fn samples(run: &Run) -> u64 {
+    let full = || samples_for(FAULT_SIZE, run.level, (USUAL_BINS - 1) as f64, POWER);
+    match run.effort {
+        Effort::Quick => 400_000,
+        Effort::Standard => 3_000_000,
+        Effort::Full => full(),
+    }
+}
+
+/// The worst of the four views.
+pub(crate) fn measure(view: View, run: &Run) -> Finding {
+    measure_with(view, run, samples(run))
+}
+
+/// As [`measure`], with a given number of samples.
+pub(crate) fn measure_with(view: View, run: &Run, n: u64) -> Finding {
+    let mut random = run.random();
+    let mut finding = Finding::p_value(run.level);
+    for (name, wo) in views() {
+        let (p, detail) = test(view, view.probe.snap(wo), n, &mut random);
+        finding.lower(p, || format!("{name}: {detail}"));
+    }
+    let found = size_found(n, run.level, (USUAL_BINS - 1) as f64);
+    finding.note(format!(
+        "{n} samples: finds an error of {:.2} % over {:.0} % of the mass with probability {POWER}",
+        100.0 * found,
+        100.0 * FAULT_MASS
+    ));
+    finding
+}
+
+/// Samples, counted.
+struct Counts {
+    cells: Vec<u64>,
+    discrete: Vec<((u32, bool), Worth, u64)>,
+    failed: u64,
+    /// Draws without a finite direction.
+    lost: u64,
+}
+
+fn count(view: View, wo: Dir, cells: &Cells, n: u64, random: &mut Random) -> Counts {
+    const BATCH: u64 = 4096;
+    let mut counts = Counts { cells: vec![0; cells.len()], discrete: Vec::new(), failed: 0, lost: 0 };
+    let (mut u, mut draws) = (Vec::new(), Vec::new());
+    let mut left = n;
+    while left > 0 {
+        let batch = left.min(BATCH);
+        left -= batch;
+        u.clear();
+        draws.clear();
+        u.extend((0..batch).map(|_| random.sampler_input(view.probe.single())));
+        view.probe.sample_all(wo, &u, &mut draws);
+        for draw in &draws {
+            match draw.kind {
+                Kind::Failed => counts.failed += 1,
+                Kind::Continuous => match cells.index(draw.wi) {
+                    Some(cell) => counts.cells[cell] += 1,
+                    None => counts.lost += 1,
+                },
+                Kind::Discrete(worth, label) => match counts.discrete.iter_mut().find(|d| d.0 == label) {
+                    Some(seen) => seen.2 += 1,
+                    None => counts.discrete.push((label, worth, 1)),
+                },
+            }
+        }
+    }
+    counts
+}
+
+/// The p-value at one wo, and what it rests on.
+fn test(view: View, wo: Dir, n: u64, random: &mut Random) -> (f64, String) {
+    let cells = Cells::following(view.probe, wo, random);
+    let integrals = cells.integrate(view.reference, wo);
+    let counts = count(view, wo, &cells, n, random);
+    if counts.lost > 0 {
+        return (0.0, format!("{} samples without a finite direction", counts.lost));
+    }
+    let total = Cells::total(&integrals);
+    let discrete: f64 = counts.discrete.iter().map(|d| d.1.pdf).sum();
+    let failed = 1.0 - total.value[3] - discrete;
+    // What is not chance: the quadrature's error, and the rounding of the probe's own probabilities.
+    let slack = total.error + 4.0 * view.probe.epsilon();
+    if !(failed >= -1e-3 && total.value[3].is_finite()) {
+        return (0.0, format!("∫pdf + Σ p(discrete) = {}", 1.0 - failed));
+    }
+
+    let n = n as f64;
+    let bins = counts.cells.iter().copied().zip(integrals.iter().map(|i| i.value[3]));
+    let bins = bins.chain(counts.discrete.iter().map(|d| (d.2, d.1.pdf))).chain([(counts.failed, failed.max(0.0))]);
+    let (mut statistic, mut used) = (0.0, 0);
+    let mut worst = (0.0, 0.0, 0.0);
+    let mut pool = (0, 0.0);
+    let mut pearson = |observed: f64, expected: f64| {
+        let term = (observed - expected).powi(2) / expected;
+        statistic += term;
+        used += 1;
+        if term > worst.0 {
+            worst = (term, observed, expected);
+        }
+    };
+    for (observed, probability) in bins {
+        if n * probability >= LEAST_EXPECTED {
+            pearson(observed as f64, n * probability);
+        } else {
+            pool = (pool.0 + observed, pool.1 + n * probability);
+        }
+    }
+    let mut p_pool = 1.0;
+    if pool.1 >= LEAST_EXPECTED {
+        pearson(pool.0 as f64, pool.1);
+    } else {
+        p_pool = poisson_p(pool.0, pool.1 - n * slack, pool.1 + n * slack);
+    }
+    let p = chi2_p(statistic, f64::from((used - 1).max(1)));
+    let detail = format!(
+        "χ² = {statistic:.1} in {used} bins; worst bin has {} for {:.1}; pool has {} for {:.2}",
+        worst.1, worst.2, pool.0, pool.1
+    );
+    // Two tests at one level: Bonferroni.
+    ((2.0 * p.min(p_pool)).min(1.0), detail)
+}

@@ -1,0 +1,44 @@
+//! The perfect mirror, against the law of reflection: ω_i = 2n(n·ω_o) − ω_o, weight R, probability 1, and nothing besides.
+
+use crate::directions::{any_above, partner, show};
+use crate::finding::{Finding, Run};
+use crate::probe::Kind;
+use crate::subject::View;
+use gonio_kernel::Vec3;
+
+/// The largest departure from the law; only for subjects that are purely discrete.
+pub(crate) fn measure(view: View, run: &Run) -> Finding {
+    let mut random = run.random();
+    let mut finding = Finding::at_most(4.0 * view.probe.epsilon(), "max |wi − mirrored wo|, |weight − R| ≤");
+    let n = Vec3::new(0.0, 0.0, 1.0);
+    for _ in 0..run.by_effort(5_000, 50_000, 500_000) {
+        let wo = view.probe.snap(any_above(&mut random));
+        let wi = view.probe.snap(partner(&mut random, wo));
+        let mirrored = n * (2.0 * n.dot(wo)) - wo;
+        for wi in [wi, mirrored] {
+            let worth = view.probe.eval(wo, wi);
+            if worth.numbers() != [0.0; 4] {
+                finding.broken(|| format!("a density over directions: {worth:?}, wo {}, wi {}", show(wo), show(wi)));
+            }
+        }
+        let draw = view.probe.sample(wo, random.sampler_input(view.probe.single()));
+        let Kind::Discrete(worth, _) = draw.kind else {
+            finding.broken(|| format!("sampled {:?} at wo {}", draw.kind, show(wo)));
+            continue;
+        };
+        finding.raise((draw.wi - mirrored).length(), || format!("wi {} for wo {}", show(draw.wi), show(wo)));
+        // One event of strength R and probability 1 where the albedo is that of a single mirror.
+        if let (Some(albedo), true) = (view.claims.albedo, view.claims.one_event) {
+            finding.raise((worth.pdf - 1.0).abs(), || format!("probability {} at wo {}", worth.pdf, show(wo)));
+            for (weight, known) in worth.weight().into_iter().zip(albedo) {
+                finding.raise((weight - known).abs(), || format!("weight {weight} instead of {known} at wo {}", show(wo)));
+            }
+        }
+        // From below there is nothing.
+        let below = view.probe.sample(-wo, random.sampler_input(view.probe.single()));
+        if below.kind != Kind::Failed {
+            finding.broken(|| format!("reflects from below: {:?} at wo {}", below.kind, show(-wo)));
+        }
+    }
+    finding
+}

@@ -1,0 +1,163 @@
+//! Lanes against scalar: lane i of eight equals the scalar `f32` result bit for bit, any NaN equal to any NaN.
+//!
+//! Each lane has its own parameters, directions and random numbers, so a lane that leaks into its neighbour shows.
+//! Ordinary inputs, ordinary ones with one or two special numbers, and all special. The unguarded mixture is compared:
+//! behind the guard most extreme inputs would compare zero with zero.
+
+use crate::finding::{Finding, Run};
+use crate::probe::{lane_event, lane_value};
+use crate::random::Random;
+use crate::totality::{SPECIAL, lane, lanes_of, parameter};
+use crate::zoo::Species;
+use gonio_kernel::closure::Unguarded;
+use gonio_kernel::frame::Frame;
+use gonio_kernel::{Event, F32x8, Real, Surface, Value, Vec3, fresnel, math, warp};
+
+/// Whether two floats are the same: the same bits, or both NaN.
+pub(crate) fn same(a: f32, b: f32) -> bool {
+    a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
+}
+
+/// A generator of eight inputs, each of `count` numbers: ordinary, or with special numbers mixed in.
+fn eight(count: usize, random: &mut Random, ordinary: &mut dyn FnMut(&mut Random) -> Vec<f32>) -> [Vec<f32>; 8] {
+    let class = random.bits() % 4;
+    std::array::from_fn(|_| {
+        let mut x = ordinary(random);
+        match class {
+            0 => {}
+            3 => x.fill_with(|| random.pick(&SPECIAL)),
+            few => (0..few).for_each(|_| x[(random.bits() % count as u64) as usize] = random.pick(&SPECIAL)),
+        }
+        x
+    })
+}
+
+/// Eight inputs side by side, from number `at` on.
+fn pack(x: &[Vec<f32>; 8], at: usize) -> F32x8 {
+    F32x8::new(std::array::from_fn(|l| x[l][at]))
+}
+fn pack3(x: &[Vec<f32>; 8], at: usize) -> Vec3<F32x8> {
+    lanes_of(std::array::from_fn(|l| vec3(&x[l], at)))
+}
+fn vec3(x: &[f32], at: usize) -> Vec3<f32> {
+    Vec3::new(x[at], x[at + 1], x[at + 2])
+}
+
+/// A mixture of two different random species: parameters, weights, directions and numbers all vary by lane.
+pub(crate) fn measure_mixture(first: &'static Species, second: &'static Species, run: &Run) -> Finding {
+    let (a, b) = (first.parameters.len(), second.parameters.len());
+    let at = a + b + 2; // then come wo, wi and u
+    let mut ordinary = |random: &mut Random| {
+        let mut x: Vec<f32> = first.parameters.iter().chain(second.parameters).map(|p| parameter(p, random)).collect();
+        x.extend([random.coarse() as f32, random.pick(&[0.0, 0.5, 1.0])]);
+        let wo = crate::directions::any_above(random);
+        let wi = crate::directions::partner(random, wo);
+        for w in [wo, wi] {
+            x.extend([w.x as f32, w.y as f32, w.z as f32]);
+        }
+        x.extend([(); 3].map(|()| random.coarse() as f32));
+        x
+    };
+    compare(run, at + 9, &mut ordinary, |x, out| {
+        let numbers: Vec<F32x8> = (0..at).map(|i| pack(x, i)).collect();
+        let surface = Surface::black()
+            .with(numbers[a + b], (first.lanes)(&numbers[..a]))
+            .with(numbers[a + b + 1], (second.lanes)(&numbers[a..a + b]));
+        let closure = Unguarded::new(&surface, pack3(x, at));
+        let value = closure.eval(pack3(x, at + 3));
+        let sample = closure.sample([pack(x, at + 6), pack(x, at + 7), pack(x, at + 8)]);
+        let event = closure.discrete(&sample.event);
+        for (l, out) in out.iter_mut().enumerate() {
+            push_value(lane_value(&value, l), out);
+            push_sample(lane(sample.wi, l), &lane_event(&sample.event, l), out);
+            push_value(lane_value(&event, l), out);
+        }
+    }, |x, out| {
+        let surface = Surface::black()
+            .with(x[a + b], (first.single)(&x[..a]))
+            .with(x[a + b + 1], (second.single)(&x[a..a + b]));
+        let closure = Unguarded::new(&surface, vec3(x, at));
+        let sample = closure.sample([x[at + 6], x[at + 7], x[at + 8]]);
+        push_value(closure.eval(vec3(x, at + 3)), out);
+        push_sample(sample.wi, &sample.event, out);
+        push_value(closure.discrete(&sample.event), out);
+    })
+}
+
+fn push_value(value: Value<f32>, out: &mut Vec<f32>) {
+    out.extend([value.f_cos.r, value.f_cos.g, value.f_cos.b, value.pdf]);
+}
+fn push_sample(wi: Vec3<f32>, event: &Event<f32>, out: &mut Vec<f32>) {
+    let truth = |x: bool| f32::from(u8::from(x));
+    out.extend([wi.x, wi.y, wi.z, event.lobe as f32, truth(event.transmitted), truth(event.discrete), truth(event.failed)]);
+}
+
+/// Mathematics, warps, frames and Fresnel: everything beneath the lobes that takes numbers.
+pub(crate) fn measure_parts(run: &Run) -> Finding {
+    let mut ordinary = |random: &mut Random| {
+        (0..6).map(|i| if i < 3 { random.between(-1.0, 1.0) as f32 } else { random.coarse() as f32 }).collect()
+    };
+    compare(run, 6, &mut ordinary, |x, out| {
+        let numbers = parts::<F32x8>(std::array::from_fn(|i| pack(x, i)));
+        for (l, out) in out.iter_mut().enumerate() {
+            out.extend(numbers.iter().map(|n| n.to_array()[l]));
+        }
+    }, |x, out| out.extend(parts::<f32>(std::array::from_fn(|i| x[i]))))
+}
+
+fn parts<R: Real>(x: [R; 6]) -> Vec<R> {
+    let v = Vec3::new(x[0], x[1], x[2]);
+    let w = Vec3::new(x[3], x[4], x[5]);
+    let mut out = vec![x[0].min(x[1]), x[0].max(x[1]), x[0].clamp(-0.5, 0.5), x[0].copysign(x[1]), x[3].sqrt(), x[0].abs()];
+    let (sin, cos) = math::sin_cos_turns(x[0]);
+    out.extend([sin, cos, fresnel::dielectric(x[3], x[4]), fresnel::conductor(x[3], x[4], x[5]), fresnel::schlick(x[3], x[4])]);
+    out.extend(warp::sample_uniform_triangle([x[3], x[4]]));
+    let frames = [Frame::from_normal(v), Frame::from_normal_tangent(v, w)];
+    let mut vectors = vec![
+        warp::sample_cosine_hemisphere([x[3], x[4]]),
+        warp::sample_uniform_sphere([x[3], x[4]]),
+        v.normalize_or(w),
+        v.cross(w),
+    ];
+    for f in frames {
+        vectors.extend([f.x, f.y, f.z, f.to_local(w), f.to_world(w)]);
+    }
+    out.extend(vectors.into_iter().flat_map(|v| [v.x, v.y, v.z]));
+    out
+}
+
+/// Counts differing numbers.
+fn compare(
+    run: &Run,
+    count: usize,
+    ordinary: &mut dyn FnMut(&mut Random) -> Vec<f32>,
+    lanes: impl Fn(&[Vec<f32>; 8], &mut [Vec<f32>; 8]),
+    scalar: impl Fn(&[f32], &mut Vec<f32>),
+) -> Finding {
+    let mut random = run.random();
+    let mut finding = Finding::at_most(0.0, "numbers that differ in a bit ≤");
+    let (mut differing, mut first) = (0_usize, String::new());
+    let rounds = run.by_effort(4_000, 40_000, 400_000);
+    let mut wide: [Vec<f32>; 8] = Default::default();
+    let mut narrow = Vec::new();
+    for _ in 0..rounds {
+        let x = eight(count, &mut random, ordinary);
+        wide.iter_mut().for_each(Vec::clear);
+        lanes(&x, &mut wide);
+        for (l, wide) in wide.iter().enumerate() {
+            narrow.clear();
+            scalar(&x[l], &mut narrow);
+            for (i, (&a, &b)) in wide.iter().zip(&narrow).enumerate() {
+                if !same(a, b) {
+                    differing += 1;
+                    if first.is_empty() {
+                        first = format!("number {i} in lane {l}: {a:e} against {b:e} of the scalar, inputs {:?}", x[l]);
+                    }
+                }
+            }
+        }
+    }
+    finding.raise(differing as f64, || first);
+    finding.note(format!("{} inputs", 8 * rounds));
+    finding
+}

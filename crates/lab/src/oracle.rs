@@ -1,0 +1,133 @@
+//! The oracle: reflectance by the book, in plain `f64`, without a line of the kernel.
+//!
+//! It shares no arrangement with the kernel: half vectors are normalised, D and Λ are in their tan²θ forms (Walter et al.
+//! 2007; Heitz 2014; PBR book, section 9.6), conductors use complex arithmetic, dielectrics Snell's angles. So an error that the
+//! kernel makes consistently, in value and density alike (two axes swapped everywhere, a π missing twice, a wrong sign of k),
+//! meets a second opinion here. Clarity before precision: it loses some digits where the kernel does not.
+
+use crate::probe::{Dir, Worth};
+use std::f64::consts::PI;
+
+/// Lambert: ρ/π.
+pub(crate) fn lambert(p: &[f64], _wo: Dir, wi: Dir) -> Worth {
+    Worth { f_cos: [p[0], p[1], p[2]].map(|albedo| albedo / PI * wi.z), pdf: wi.z / PI }
+}
+
+/// The mirror has no density over directions.
+pub(crate) fn mirror(_p: &[f64], _wo: Dir, _wi: Dir) -> Worth {
+    Worth { f_cos: [0.0; 3], pdf: 0.0 }
+}
+
+/// A conductor: alpha_x, alpha_y, three η, three k.
+pub(crate) fn metal(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    microfacet(p[0], p[1], wo, wi, |cos| [0, 1, 2].map(|c| conductor(cos, p[2 + c], p[5 + c])))
+}
+
+/// Schlick's Fresnel: alpha_x, alpha_y, three f0.
+pub(crate) fn schlick(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    microfacet(p[0], p[1], wo, wi, |cos| [0, 1, 2].map(|c| p[2 + c] + (1.0 - p[2 + c]) * (1.0 - cos).powi(5)))
+}
+
+/// Cook–Torrance with GGX: f = F D G₂ / (4 cosθ_o cosθ_i), visible normals as density.
+fn microfacet(alpha_x: f64, alpha_y: f64, wo: Dir, wi: Dir, fresnel: impl Fn(f64) -> [f64; 3]) -> Worth {
+    let sum = [wo.x + wi.x, wo.y + wi.y, wo.z + wi.z];
+    let length = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();
+    let m = sum.map(|x| x / length);
+    let cos_om = wo.x * m[0] + wo.y * m[1] + wo.z * m[2];
+    let d = ggx_d(alpha_x, alpha_y, m);
+    let (lambda_o, lambda_i) = (ggx_lambda(alpha_x, alpha_y, wo), ggx_lambda(alpha_x, alpha_y, wi));
+    let g2 = 1.0 / (1.0 + lambda_o + lambda_i);
+    let g1 = 1.0 / (1.0 + lambda_o);
+    // D_visible(m) = G₁ D (wo·m)/cosθ_o, and dω_m/dω_i = 1/(4 wo·m).
+    let pdf = g1 * d * cos_om / wo.z / (4.0 * cos_om);
+    Worth { f_cos: fresnel(cos_om).map(|f| f * d * g2 / (4.0 * wo.z * wi.z) * wi.z), pdf }
+}
+
+/// D(m) = 1 / (π α_x α_y cos⁴θ (1 + tan²θ (cos²φ/α_x² + sin²φ/α_y²))²).
+fn ggx_d(alpha_x: f64, alpha_y: f64, m: [f64; 3]) -> f64 {
+    let cos2 = m[2] * m[2];
+    let sin2 = m[0] * m[0] + m[1] * m[1];
+    if sin2 == 0.0 {
+        return 1.0 / (PI * alpha_x * alpha_y);
+    }
+    let (cos2_phi, sin2_phi) = (m[0] * m[0] / sin2, m[1] * m[1] / sin2);
+    let e = sin2 / cos2 * (cos2_phi / (alpha_x * alpha_x) + sin2_phi / (alpha_y * alpha_y));
+    1.0 / (PI * alpha_x * alpha_y * cos2 * cos2 * (1.0 + e) * (1.0 + e))
+}
+
+/// Λ(w) = (√(1 + α² tan²θ) − 1)/2 with α² = cos²φ α_x² + sin²φ α_y².
+fn ggx_lambda(alpha_x: f64, alpha_y: f64, w: Dir) -> f64 {
+    let sin2 = w.x * w.x + w.y * w.y;
+    if sin2 == 0.0 {
+        return 0.0;
+    }
+    let alpha2 = w.x * w.x / sin2 * alpha_x * alpha_x + w.y * w.y / sin2 * alpha_y * alpha_y;
+    ((1.0 + alpha2 * sin2 / (w.z * w.z)).sqrt() - 1.0) / 2.0
+}
+
+/// Smith's G₁.
+pub(crate) fn ggx_g1(alpha_x: f64, alpha_y: f64, w: Dir) -> f64 {
+    1.0 / (1.0 + ggx_lambda(alpha_x, alpha_y, w))
+}
+
+/// Height-correlated G₂.
+pub(crate) fn ggx_g2(alpha_x: f64, alpha_y: f64, wo: Dir, wi: Dir) -> f64 {
+    1.0 / (1.0 + ggx_lambda(alpha_x, alpha_y, wo) + ggx_lambda(alpha_x, alpha_y, wi))
+}
+
+type Complex = [f64; 2];
+
+fn times(a: Complex, b: Complex) -> Complex {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
+}
+fn norm2(a: Complex) -> f64 {
+    a[0] * a[0] + a[1] * a[1]
+}
+/// The root with non-negative real part, by polar angles.
+fn root(a: Complex) -> Complex {
+    let (r, phi) = (norm2(a).sqrt().sqrt(), 0.5 * a[1].atan2(a[0]));
+    [r * phi.cos(), r * phi.sin()]
+}
+
+/// Fresnel's reflectance of an interface of complex index n = η − ik, unpolarised: amplitudes
+/// r⊥ = (cosθ − s)/(cosθ + s), r∥ = (n² cosθ − s)/(n² cosθ + s), s = √(n² − sin²θ).
+pub(crate) fn conductor(cos: f64, eta: f64, k: f64) -> f64 {
+    let n2 = times([eta, -k], [eta, -k]);
+    let s = root([n2[0] - (1.0 - cos * cos), n2[1]]);
+    let n2_cos = n2.map(|x| x * cos);
+    let ratio = |a: Complex| norm2([a[0] - s[0], a[1] - s[1]]) / norm2([a[0] + s[0], a[1] + s[1]]);
+    0.5 * (ratio([cos, 0.0]) + ratio(n2_cos))
+}
+
+/// Fresnel's reflectance between dielectrics by Snell's angles: r⊥ = −sin(θ − θ′)/sin(θ + θ′), r∥ = tan(θ − θ′)/tan(θ + θ′).
+pub(crate) fn dielectric(cos: f64, eta: f64) -> f64 {
+    let theta = cos.acos();
+    let sin_t = theta.sin() / eta;
+    if sin_t >= 1.0 {
+        return 1.0;
+    }
+    if theta < 1e-6 {
+        return ((eta - 1.0) / (eta + 1.0)).powi(2);
+    }
+    let theta_t = sin_t.asin();
+    let (minus, plus) = (theta - theta_t, theta + theta_t);
+    0.5 * ((minus.sin() / plus.sin()).powi(2) + (minus.tan() / plus.tan()).powi(2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn agrees_with_printed_values() {
+        // Glass of 1.5 reflects 4 % straight on and nothing polarised in the plane at Brewster's angle, where the rest is
+        // ½(η² − 1)²/(η² + 1)²; a perfect dielectric limit of the conductor is the same curve.
+        assert!((dielectric(1.0, 1.5) - 0.04).abs() < 1e-12);
+        let brewster = 1.5_f64.atan().cos();
+        let rest = 0.5 * (1.25_f64 / 3.25).powi(2);
+        assert!((dielectric(brewster, 1.5) - rest).abs() < 1e-12);
+        assert!((conductor(brewster, 1.5, 0.0) - rest).abs() < 1e-12);
+        // ((η − 1)² + k²)/((η + 1)² + k²) at normal incidence.
+        assert!((conductor(1.0, 0.2, 3.0) - (0.64 + 9.0) / (1.44 + 9.0)).abs() < 1e-12);
+    }
+}

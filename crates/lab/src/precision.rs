@@ -1,0 +1,71 @@
+//! Precision: the `f32` result against the `f64` result of exactly the same numbers.
+//!
+//! **Limit.** The error must not exceed 8 · max(eps · f, s), where s is the largest change of f when one component of one
+//! direction moves by one unit in the last place of `f32`, by differences in `f64`. That is: as if every input had been
+//! rounded a few times. An `f32` program cannot do better than a few times the greater of the two; one that subtracts
+//! what it should not, does far worse.
+
+use crate::directions::{any_above, partner, show};
+use crate::finding::{Finding, Run};
+use crate::probe::{Dir, Probe, demote};
+use crate::subject::View;
+use gonio_kernel::Vec3;
+
+/// The largest error in units of max(eps f, s).
+pub(crate) fn measure(single: View, run: &Run) -> Finding {
+    let mut random = run.random();
+    let mut finding = Finding::at_most(8.0, "max |f32 − f64| / max(eps·f, largest change by one ulp of an input) ≤");
+    let eps = f64::from(f32::EPSILON);
+    let mut relative = 0.0_f64;
+    for _ in 0..run.by_effort(3_000, 30_000, 300_000) {
+        let wo = single.probe.snap(any_above(&mut random));
+        let wi = single.probe.snap(partner(&mut random, wo));
+        if wo.z <= 0.0 || wi.z <= 0.0 {
+            continue;
+        }
+        let (rough, exact) = (single.probe.eval(wo, wi).numbers(), single.reference.eval(wo, wi).numbers());
+        let moves = sensitivity(single.reference, wo, wi);
+        for i in 0..4 {
+            // Where f32 itself runs out of normal numbers, its rounding is absolute.
+            let unit = (eps * exact[i]).max(moves[i]).max(f64::from(f32::MIN_POSITIVE));
+            let error = (rough[i] - exact[i]).abs();
+            if exact[i] > 1e-6 {
+                relative = relative.max(error / exact[i]);
+            }
+            finding.raise(error / unit, || {
+                let what = ["f_cos red", "f_cos green", "f_cos blue", "pdf"][i];
+                format!("{what}: {:.9e} instead of {:.9e}, wo {}, wi {}", rough[i], exact[i], show(wo), show(wi))
+            });
+        }
+    }
+    finding.note(format!("largest relative error where f > 1e-6: {relative:.2e}"));
+    finding
+}
+
+/// The largest change of each of the four numbers when one component of wo or wi moves by one ulp of `f32`, either way.
+pub(crate) fn sensitivity(probe: &dyn Probe, wo: Dir, wi: Dir) -> [f64; 4] {
+    let here = probe.eval(wo, wi).numbers();
+    let mut largest = [0.0_f64; 4];
+    let mut compare = |wo: Dir, wi: Dir| {
+        for (largest, (a, b)) in largest.iter_mut().zip(here.iter().zip(probe.eval(wo, wi).numbers())) {
+            *largest = largest.max((a - b).abs());
+        }
+    };
+    for axis in 0..3 {
+        for up in [false, true] {
+            compare(moved(wo, axis, up), wi);
+            compare(wo, moved(wi, axis, up));
+        }
+    }
+    largest
+}
+
+/// w with one component moved to the next `f32`. The cosine stays positive.
+fn moved(w: Dir, axis: usize, up: bool) -> Dir {
+    let mut c: [f32; 3] = demote(w).into();
+    let next = if up { c[axis].next_up() } else { c[axis].next_down() };
+    if axis < 2 || next > 0.0 {
+        c[axis] = next;
+    }
+    Vec3::from(c.map(f64::from))
+}

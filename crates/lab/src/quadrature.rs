@@ -1,0 +1,133 @@
+//! Adaptive quadrature over a rectangle, of several integrands at once.
+//!
+//! A tensor of 7-point Gauss–Legendre rules (exact to degree 13 in either variable). A rectangle is halved across the
+//! direction in which its highest Legendre coefficient is larger, until the sum of the halves agrees with the whole.
+
+/// Values of the integrands at a point.
+pub(crate) type Four = [f64; 4];
+
+/// An integral, the sum of the differences that were left, and how many points it took.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Integral {
+    /// The integrals.
+    pub(crate) value: Four,
+    /// An estimate of the error of the worst of them; pessimistic where the integrand is smooth.
+    pub(crate) error: f64,
+    /// Evaluations.
+    pub(crate) points: usize,
+}
+
+impl Integral {
+    /// Adds another.
+    pub(crate) fn add(&mut self, other: &Integral) {
+        for (a, b) in self.value.iter_mut().zip(other.value) {
+            *a += b;
+        }
+        self.error += other.error;
+        self.points += other.points;
+    }
+}
+
+/// lo and hi of either variable.
+pub(crate) type Rectangle = [[f64; 2]; 2];
+
+// Abramowitz & Stegun, table 25.4, n = 7, on [−1, 1].
+const NODES: [f64; 7] = [
+    -0.949_107_912_342_758_5,
+    -0.741_531_185_599_394_4,
+    -0.405_845_151_377_397_2,
+    0.0,
+    0.405_845_151_377_397_2,
+    0.741_531_185_599_394_4,
+    0.949_107_912_342_758_5,
+];
+const WEIGHTS: [f64; 7] = [
+    0.129_484_966_168_869_7,
+    0.279_705_391_489_276_7,
+    0.381_830_050_505_118_9,
+    0.417_959_183_673_469_4,
+    0.381_830_050_505_118_9,
+    0.279_705_391_489_276_7,
+    0.129_484_966_168_869_7,
+];
+
+/// ∫∫ f over the rectangle, to the absolute tolerance, with at most about `budget` evaluations.
+pub(crate) fn integrate(f: &dyn Fn(f64, f64) -> Four, area: Rectangle, tolerance: f64, budget: usize) -> Integral {
+    let whole = rule(f, area);
+    let mut left = budget as isize;
+    let mut sum = Integral::default();
+    refine(f, area, whole, tolerance, &mut left, &mut sum);
+    sum
+}
+
+/// The value of the rule, and along which variable the integrand is rougher.
+fn rule(f: &dyn Fn(f64, f64) -> Four, area: Rectangle) -> (Four, usize) {
+    let [center, half] = [0.5, -0.5].map(|s| area.map(|[lo, hi]| s * lo + 0.5 * hi));
+    let mut grid = [[0.0; 7]; 7];
+    let mut sum = [0.0; 4];
+    for (i, row) in grid.iter_mut().enumerate() {
+        for (j, total) in row.iter_mut().enumerate() {
+            let value = f(center[0] + half[0] * NODES[i], center[1] + half[1] * NODES[j]);
+            let weight = WEIGHTS[i] * WEIGHTS[j];
+            for (s, v) in sum.iter_mut().zip(value) {
+                *s += weight * v;
+            }
+            *total = value.iter().sum();
+        }
+    }
+    let p6 = NODES.map(legendre6);
+    let roughness = |at: &dyn Fn(usize, usize) -> f64| -> f64 {
+        (0..7).map(|j| WEIGHTS[j] * (0..7).map(|i| WEIGHTS[i] * p6[i] * at(i, j)).sum::<f64>().abs()).sum()
+    };
+    let rough = [roughness(&|i, j| grid[i][j]), roughness(&|i, j| grid[j][i])];
+    let scale = half[0] * half[1];
+    (sum.map(|s| s * scale), usize::from(rough[1] > rough[0]))
+}
+
+fn legendre6(x: f64) -> f64 {
+    let x2 = x * x;
+    (((231.0 * x2 - 315.0) * x2 + 105.0) * x2 - 5.0) / 16.0
+}
+
+fn refine(
+    f: &dyn Fn(f64, f64) -> Four,
+    area: Rectangle,
+    (whole, axis): (Four, usize),
+    tolerance: f64,
+    left: &mut isize,
+    sum: &mut Integral,
+) {
+    let [lo, hi] = area[axis];
+    let middle = 0.5 * (lo + hi);
+    let (mut first, mut second) = (area, area);
+    first[axis] = [lo, middle];
+    second[axis] = [middle, hi];
+    let (a, b) = (rule(f, first), rule(f, second));
+    *left -= 98;
+    let halves: Four = std::array::from_fn(|i| a.0[i] + b.0[i]);
+    let error = halves.iter().zip(whole).fold(0.0_f64, |worst, (h, w)| worst.max((h - w).abs()));
+    if error <= tolerance || *left <= 0 || !error.is_finite() {
+        sum.add(&Integral { value: halves, error, points: 98 });
+    } else {
+        sum.points += 98;
+        refine(f, first, a, 0.5 * tolerance, left, sum);
+        refine(f, second, b, 0.5 * tolerance, left, sum);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn integrates_what_has_a_closed_form() {
+        // ∫∫ cos x · e^y, and a peak of width 1e-3: atan in either variable.
+        let peak = |x: f64| 1e-3 / (1e-6 + x * x);
+        let f = |x: f64, y: f64| [x.cos() * y.exp(), peak(x - 0.3) * peak(y - 0.6), 1.0, 0.0];
+        let got = integrate(&f, [[0.0, 1.0], [0.0, 1.0]], 1e-10, 1_000_000);
+        let line = |c: f64| (c / 1e-3).atan() + ((1.0 - c) / 1e-3).atan();
+        assert!((got.value[0] - 1.0_f64.sin() * (1.0_f64.exp() - 1.0)).abs() < 1e-11);
+        assert!((got.value[1] - line(0.3) * line(0.6)).abs() < 1e-8, "{:?}", got);
+        assert!((got.value[2] - 1.0).abs() < 1e-14);
+    }
+}

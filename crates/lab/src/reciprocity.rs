@@ -1,0 +1,44 @@
+//! Reciprocity: f(wo, wi) = f(wi, wo) for reflection (Helmholtz).
+//!
+//! **Limit.** The kernel's lobes are written so that exchanging the directions exchanges the operands of commutative
+//! operations only (h = wo + wi, one sum in the visibility term). What differs is the rounding of cos_i s(wo) + cos_o s(wi)
+//! (fused on one side), of the product with cos_i, and the division by it here: at most 4 roundings of half an eps on
+//! either side and as many again for each lobe of a mixture, so 16 eps bounds it with room. Of a stranger's lobe no such
+//! thing is known: it gets 8 times the change that moving one input by one unit in the last place makes, or 8 eps.
+
+use crate::directions::{any_above, partner, show};
+use crate::finding::{Finding, Run};
+use crate::precision::sensitivity;
+use crate::subject::View;
+
+/// The largest relative difference, in units of its limit.
+pub(crate) fn measure(view: View, run: &Run) -> Finding {
+    let mut random = run.random();
+    let eps = view.probe.epsilon();
+    let mut finding = Finding::at_most(1.0, "max |f(wo,wi) − f(wi,wo)| in units of its rounding limit ≤");
+    let mut residual = 0.0_f64;
+    for _ in 0..run.by_effort(5_000, 50_000, 1_000_000) {
+        let wo = view.probe.snap(any_above(&mut random));
+        let wi = view.probe.snap(partner(&mut random, wo));
+        if wo.z <= 0.0 || wi.z <= 0.0 {
+            continue;
+        }
+        let (there, back) = (view.probe.eval(wo, wi).f_cos, view.probe.eval(wi, wo).f_cos);
+        let moves = if view.claims.symmetric { [0.0; 4] } else { sensitivity(view.probe, wo, wi) };
+        for c in 0..3 {
+            // Denormal f32 results carry few bits: nothing to compare below.
+            let floor = if view.probe.single() { 1e-30 } else { 1e-280 };
+            let (a, b) = (there[c] / wi.z, back[c] / wo.z);
+            if there[c].max(back[c]) < floor {
+                continue;
+            }
+            let limit = if view.claims.symmetric { 16.0 * eps * a.max(b) } else { 8.0 * (eps * a.max(b)).max(moves[c] / wi.z) };
+            residual = residual.max((a - b).abs() / a.max(b));
+            finding.raise((a - b).abs() / limit, || {
+                format!("{a:.9e} against {b:.9e}, channel {c}, wo {}, wi {}", show(wo), show(wi))
+            });
+        }
+    }
+    finding.note(format!("largest relative residual {residual:.2e}"));
+    finding
+}

@@ -1,0 +1,62 @@
+//! The kernel against the oracle: random parameters and directions, in `f64`, to nine digits.
+
+use crate::directions::{any_above, partner, show};
+use crate::finding::{Finding, Run};
+use crate::oracle;
+use crate::probe::{Probe, SurfaceProbe};
+use crate::totality::parameter;
+use crate::zoo::Species;
+use gonio_kernel::units::{Flux, LUMINOUS_EFFICACY};
+use gonio_kernel::{Alpha, Rgb, Roughness, Surface, fresnel};
+
+/// What nine digits need of a pair of directions: the oracle's normalised half vector loses eps/alpha, its 1 − cos²θ
+/// and the polar roots of its Fresnel lose eps over the smallest term, 1e-4 squared.
+const LIMIT: f64 = 1e-7;
+
+/// One species at random parameters.
+pub(crate) fn measure(species: &Species, run: &Run) -> Finding {
+    let mut random = run.random();
+    let mut finding = Finding::at_most(LIMIT, "max |kernel − oracle| / oracle ≤");
+    for _ in 0..run.by_effort(30_000, 300_000, 3_000_000) {
+        let p: Vec<f64> = species.parameters.iter().map(|p| f64::from(parameter(p, &mut random))).collect();
+        let probe = SurfaceProbe::new(Surface::of((species.double)(&p)), None);
+        let wo = any_above(&mut random);
+        let wi = partner(&mut random, wo);
+        // The oracle needs room: tan θ of a grazing direction and 1 − cos² of it lose digits.
+        if wo.z < 1e-4 || wi.z < 1e-4 {
+            continue;
+        }
+        let (got, right) = (probe.eval(wo, wi), (species.oracle)(&p, wo, wi));
+        for (got, right) in got.numbers().into_iter().zip(right.numbers()) {
+            if got == 0.0 && right == 0.0 {
+                continue;
+            }
+            finding.raise((got - right).abs() / right.abs(), || {
+                format!("{got:.12e} instead of {right:.12e}, parameters {p:?}, wo {}, wi {}", show(wo), show(wi))
+            });
+        }
+    }
+    finding
+}
+
+/// Fresnel's equations at every angle, the roughness map, and the constants of photometry.
+pub(crate) fn measure_conventions(run: &Run) -> Finding {
+    let mut random = run.random();
+    let mut finding = Finding::at_most(LIMIT, "max |kernel − textbook| ≤");
+    for _ in 0..run.by_effort(20_000, 100_000, 1_000_000) {
+        let cos = 1.0 - random.uniform();
+        let (eta, k) = (random.log_between(0.05, 20.0), random.log_between(1e-3, 20.0));
+        let (got, right) = (fresnel::conductor(cos, eta, k), oracle::conductor(cos, eta, k));
+        finding.raise((got - right).abs(), || format!("conductor({cos}, {eta}, {k}) = {got}, not {right}"));
+        let (got, right) = (fresnel::dielectric(cos, eta), oracle::dielectric(cos, eta));
+        finding.raise((got - right).abs(), || format!("dielectric({cos}, {eta}) = {got}, not {right}"));
+        let roughness = random.uniform();
+        let alpha = Alpha::from(Roughness(roughness)).0;
+        finding.raise((alpha - roughness * roughness).abs(), || format!("roughness {roughness} became alpha {alpha}"));
+    }
+    // CIE 1931 for Rec. 709 primaries and D65: the second row of the matrix of IEC 61966-2-1; 683 lm/W defines the candela.
+    let luminance = Rgb::new(1.0, 0.1, 0.01).luminance();
+    finding.raise((luminance - (0.2126 + 0.07152 + 0.000_722)).abs(), || format!("luminance {luminance}"));
+    finding.raise((Flux(2.0).photometric().0 - 1366.0).abs(), || format!("luminous efficacy {LUMINOUS_EFFICACY}"));
+    finding
+}

@@ -1,0 +1,281 @@
+//! Totality: inside the domain the unguarded formulas are finite and non-negative; outside, a closure is exactly zero.
+//!
+//! Three sweeps over every species. [`measure_inside`]: random parameters over their whole ranges and directions of every
+//! difficult kind, up to the edge of the domain in length, eight at a time, through the unguarded mixture.
+//! [`measure_special`]: 24 special numbers in every place of directions and parameters, through the guard, with one or
+//! two places special and the others ordinary, and all special at once. (Pure random bits are a weak test: nearly all of
+//! them are outside the domain and stop at the guard.) [`measure_probe`]: the same for a stranger's lobe, which need not
+//! be total outside its domain, but must not panic.
+
+use crate::directions::{any_above, partner, show};
+use crate::finding::{Finding, Run};
+use crate::probe::{Kind, Probe, demote, lane_value};
+use crate::random::Random;
+use crate::subject::View;
+use crate::zoo::{Parameter, Species};
+use gonio_kernel::{Closure, F32x8, Real, Surface, Vec3, closure::Unguarded};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Numbers at which floating-point code goes wrong: zeros, denormals, the borders of overflow, infinities, NaN.
+pub(crate) const SPECIAL: [f32; 24] = [
+    0.0,
+    -0.0,
+    f32::from_bits(1),
+    -f32::from_bits(1),
+    1e-40,
+    f32::MIN_POSITIVE,
+    -f32::MIN_POSITIVE,
+    1e-30,
+    1e-20,
+    1e-12,
+    1e-4,
+    0.5,
+    1.0 - f32::EPSILON / 2.0,
+    1.0,
+    1.0 + f32::EPSILON,
+    -1.0,
+    1.5,
+    100.0,
+    1e20,
+    -1e20,
+    f32::MAX,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::NAN,
+];
+
+/// A value of a parameter's range, ends included.
+pub(crate) fn parameter(p: &Parameter, random: &mut Random) -> f32 {
+    let (lo, hi) = (f64::from(p.lo), f64::from(p.hi));
+    let x = match random.bits() % 8 {
+        0 => lo,
+        1 => hi,
+        _ => match p.log_from {
+            Some(from) => random.log_between(f64::from(from), hi),
+            None => random.between(lo, hi),
+        },
+    };
+    (x as f32).clamp(p.lo, p.hi)
+}
+
+/// The cosines that make formulas underflow: a direction in the domain may graze as closely as `f32` can say.
+const TINY: [f32; 7] = [1e-45, 1e-40, f32::MIN_POSITIVE, 1e-30, 1e-22, 1e-18, 1e-12];
+
+/// How many lanes returned something that is not finite or negative, over one species, inside the domain.
+pub(crate) fn measure_inside(species: &'static Species, run: &Run) -> Finding {
+    let mut random = run.random();
+    let mut finding = Finding::at_most(0.0, "unsound results without a guard, inside the domain ≤");
+    let mut unsound = 0_usize;
+    let mut first = String::new();
+    let rounds = run.by_effort(25_000, 250_000, 2_500_000);
+    for _ in 0..rounds {
+        let mut p = vec![[0.0_f32; 8]; species.parameters.len()];
+        let (mut wo, mut wi) = ([Vec3::unit_z(); 8], [Vec3::unit_z(); 8]);
+        for l in 0..8 {
+            for (p, range) in p.iter_mut().zip(species.parameters) {
+                p[l] = parameter(range, &mut random);
+            }
+            (wo[l], wi[l]) = pair(&mut random);
+        }
+        let numbers: Vec<F32x8> = p.iter().copied().map(F32x8::new).collect();
+        let surface = Surface::of((species.lanes)(&numbers));
+        let closure = Unguarded::new(&surface, lanes_of(wo));
+        let value = closure.eval(lanes_of(wi));
+        let u = [(); 3].map(|()| F32x8::new(std::array::from_fn(|_| random.coarse() as f32)));
+        let sample = closure.sample(u);
+        let again = closure.eval(sample.wi);
+        let event = closure.discrete(&sample.event);
+        for l in 0..8 {
+            let sound = |v| lane_value(v, l).is_sound();
+            let w = lane(sample.wi, l);
+            if sound(&value) && sound(&event) && sound(&again) && w.is_direction() {
+                continue;
+            }
+            unsound += 1;
+            if first.is_empty() {
+                let p: Vec<f32> = p.iter().map(|p| p[l]).collect();
+                first = format!(
+                    "parameters {p:?}, wo {:?}, wi {:?}: {:?}; sampled {w:?}: {:?}",
+                    <[f32; 3]>::from(wo[l]),
+                    <[f32; 3]>::from(wi[l]),
+                    lane_value(&value, l),
+                    lane_value(&again, l)
+                );
+            }
+        }
+    }
+    finding.raise(unsound as f64, || first);
+    finding.note(format!("{} evaluations", 8 * rounds));
+    finding
+}
+
+/// Two directions of the domain: any kind, up to its edge in length, now and then with a tiny cosine or mirrored exactly.
+fn pair(random: &mut Random) -> (Vec3<f32>, Vec3<f32>) {
+    let wo = any_above(random);
+    let wi = partner(random, wo);
+    let (mut wo, mut wi) = (demote(wo), demote(wi));
+    match random.bits() % 16 {
+        0 => wo.z = random.pick(&TINY),
+        1 => wi.z = random.pick(&TINY),
+        2 => {
+            // Mirror images at grazing: the half vector is (0, 0, 2z).
+            let phi = random.between(0.0, std::f64::consts::TAU);
+            wo = Vec3::new(phi.cos() as f32, phi.sin() as f32, random.pick(&TINY));
+            wi = Vec3::new(-wo.x, -wo.y, random.pick(&[wo.z, random.pick(&TINY)]));
+        }
+        3 => wi = Vec3::new(-wo.x, -wo.y, wo.z),
+        4 => wi = wo,
+        5 => (wo, wi) = (-wo, wi),
+        6 => (wo, wi) = (wo, -wi),
+        _ => {}
+    }
+    // | |w|² − 1 | ≤ 1e-3: a length of 1 ± 4.9e-4.
+    let mut stretch = |w: Vec3<f32>| {
+        let s = if random.bits() % 4 == 0 { random.between(-4.9e-4, 4.9e-4) } else { 0.0 };
+        let stretched = w * (1.0 + s) as f32;
+        if stretched.is_direction() { stretched } else { w }
+    };
+    let (a, b) = (stretch(wo), stretch(wi));
+    let fallback = Vec3::unit_z();
+    (if a.is_direction() { a } else { fallback }, if b.is_direction() { b } else { fallback })
+}
+
+/// Broken promises of the guarded closure over special numbers.
+pub(crate) fn measure_special(species: &'static Species, run: &Run) -> Finding {
+    let mut random = run.random();
+    let mut finding = Finding::at_most(0.0, "results of the closure that break its promise ≤");
+    let mut broken = 0_usize;
+    let mut first = String::new();
+    let count = species.parameters.len();
+    let places = count + 6 + 3;
+    let rounds = run.by_effort(50_000, 500_000, 5_000_000);
+    for round in 0..rounds {
+        let (wo, wi) = pair(&mut random);
+        let mut x: Vec<f32> = species.parameters.iter().map(|p| parameter(p, &mut random)).collect();
+        x.extend(<[f32; 3]>::from(wo).into_iter().chain(<[f32; 3]>::from(wi)));
+        x.extend([(); 3].map(|()| random.coarse() as f32));
+        // One place, two places, all places; and first of all every number in every place once.
+        match round {
+            r if r < places * SPECIAL.len() => x[r / SPECIAL.len()] = SPECIAL[r % SPECIAL.len()],
+            r => match r % 4 {
+                0 => x.fill_with(|| random.pick(&SPECIAL)),
+                1 => x.fill_with(|| f32::from_bits(random.bits() as u32)),
+                k => (1..k).for_each(|_| x[(random.bits() % places as u64) as usize] = random.pick(&SPECIAL)),
+            },
+        }
+        let judged = catch_unwind(AssertUnwindSafe(|| judge_closure(species, &x))).unwrap_or(Some("panics"));
+        if let Some(what) = judged {
+            broken += 1;
+            if first.is_empty() {
+                first = format!("{what}: parameters {:?}, wo {:?}, wi {:?}, u {:?}", &x[..count], &x[count..count + 3], &x[count + 3..count + 6], &x[count + 6..]);
+            }
+        }
+    }
+    finding.raise(broken as f64, || first);
+    finding.note(format!("{rounds} evaluations"));
+    finding
+}
+
+/// Which promise a closure breaks at these parameters, wo, wi and u.
+fn judge_closure(species: &Species, x: &[f32]) -> Option<&'static str> {
+    let count = species.parameters.len();
+    let (p, rest) = x.split_at(count);
+    let surface = Surface::of((species.single)(p));
+    let wo = Vec3::new(rest[0], rest[1], rest[2]);
+    let wi = Vec3::new(rest[3], rest[4], rest[5]);
+    let closure = Closure::new(&surface, wo);
+    let is_zero = |v: &gonio_kernel::Value<f32>| {
+        // Exactly +0: a weight 0/0 must not become −0/0 either.
+        [v.f_cos.r, v.f_cos.g, v.f_cos.b, v.pdf].iter().all(|x| x.to_bits() == 0)
+    };
+    let value = closure.eval(wi);
+    if !value.is_sound() {
+        return Some("eval is not finite and non-negative");
+    }
+    // The domain as the lab understands it, not as the kernel computes it.
+    let direction = |w: Vec3<f32>| {
+        let w = crate::probe::promote(w);
+        w.length2() - 1.0
+    };
+    let inside = |difference: f64| difference.abs() <= 1e-3 - 1e-6;
+    let outside = |difference: f64| difference.is_nan() || difference.abs() > 1e-3 + 1e-6;
+    let off = |x: f32, range: &Parameter| x.is_nan() || x < 0.99 * range.lo || x > range.hi;
+    let bad_parameter = p.iter().zip(species.parameters).any(|(&x, range)| off(x, range));
+    if (outside(direction(wo)) || outside(direction(wi)) || bad_parameter) && !is_zero(&value) {
+        return Some("eval is not exactly zero outside the domain");
+    }
+    let sample = closure.sample([rest[6], rest[7], rest[8]]);
+    let w = crate::probe::promote(sample.wi);
+    if !inside(w.length2() - 1.0) {
+        return Some("sample returns no finite unit direction");
+    }
+    if (outside(direction(wo)) || bad_parameter) && !sample.event.failed {
+        return Some("sample does not fail outside the domain");
+    }
+    let event = closure.discrete(&sample.event);
+    if !event.is_sound() || (sample.event.failed && !is_zero(&event)) {
+        return Some("discrete is not sound, or not zero for a failed event");
+    }
+    None
+}
+
+/// A probe by itself: sound inside the domain, and no panic on special directions.
+pub(crate) fn measure_probe(view: View, run: &Run) -> Finding {
+    let mut random = run.random();
+    let mut finding = Finding::at_most(0.0, "unsound results inside the domain, or panics outside ≤");
+    let mut broken = 0_usize;
+    let mut first = String::new();
+    for round in 0..run.by_effort(50_000, 500_000, 5_000_000) {
+        let (wo, wi) = pair(&mut random);
+        let u = random.sampler_input(view.probe.single());
+        let (mut o, mut i): ([f32; 3], [f32; 3]) = (wo.into(), wi.into());
+        let special = round % 2 == 1;
+        if special {
+            let place = (random.bits() % 6) as usize;
+            let x = random.pick(&SPECIAL);
+            if place < 3 { o[place] = x } else { i[place - 3] = x }
+        }
+        let (wo, wi) = (Vec3::from(o.map(f64::from)), Vec3::from(i.map(f64::from)));
+        let judged = catch_unwind(AssertUnwindSafe(|| judge_probe(view.probe, wo, wi, u)));
+        let wrong = match judged {
+            Err(_) => Some("panics"),
+            Ok(wrong) => wrong.filter(|_| !special),
+        };
+        if let Some(what) = wrong {
+            broken += 1;
+            if first.is_empty() {
+                first = format!("{what}: wo {}, wi {}, u {u:?}", show(wo), show(wi));
+            }
+        }
+    }
+    finding.raise(broken as f64, || first);
+    finding
+}
+
+fn judge_probe(probe: &dyn Probe, wo: Vec3<f64>, wi: Vec3<f64>, u: [f64; 3]) -> Option<&'static str> {
+    let value = probe.eval(wo, wi);
+    let draw = probe.sample(wo, u);
+    let again = probe.eval(wo, draw.wi);
+    if !value.is_sound() || !again.is_sound() {
+        return Some("eval is not finite and non-negative");
+    }
+    // A comparison that NaN fails.
+    if !((draw.wi.length2() - 1.0).abs() <= 2e-3) {
+        return Some("sample returns no finite unit direction");
+    }
+    match draw.kind {
+        Kind::Discrete(worth, _) if !worth.is_sound() => Some("discrete is not finite and non-negative"),
+        _ => None,
+    }
+}
+
+/// The directions side by side.
+pub(crate) fn lanes_of(w: [Vec3<f32>; 8]) -> Vec3<F32x8> {
+    Vec3::new(F32x8::new(w.map(|w| w.x)), F32x8::new(w.map(|w| w.y)), F32x8::new(w.map(|w| w.z)))
+}
+
+/// One of the directions.
+pub(crate) fn lane(w: Vec3<F32x8>, l: usize) -> Vec3<f32> {
+    Vec3::new(w.x.to_array()[l], w.y.to_array()[l], w.z.to_array()[l])
+}
+

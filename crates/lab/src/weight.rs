@@ -1,0 +1,44 @@
+//! The weight bound: no sample weighs more than its lobe promises, and f_cos never exceeds that multiple of the density.
+//!
+//! A single lobe of the kernel weighs at most 1. A mixture trades between lobes: its bound is max wᵢ/pᵢ. Both the samples
+//! themselves and random pairs of directions are tried: a density that vanishes where f does not is an infinite weight.
+
+use crate::directions::{any_above, partner, show};
+use crate::finding::{Finding, Run};
+use crate::probe::{Dir, Kind, Worth};
+use crate::subject::View;
+
+/// The largest ratio of weight to bound.
+pub(crate) fn measure(view: View, run: &Run) -> Finding {
+    let mut random = run.random();
+    // f_cos and pdf share D and G₁; what is left, G₂/G₁ and F and the mixture's sums, takes about 16 roundings, each half
+    // an eps: 16 eps is twice what they can add up to.
+    let slack = 16.0 * view.probe.epsilon();
+    let mut finding = Finding::at_most(1.0 + slack, "max f_cos/(pdf · bound) ≤");
+    for _ in 0..run.by_effort(4_000, 40_000, 400_000) {
+        let wo = view.probe.snap(any_above(&mut random));
+        if wo.z <= 0.0 {
+            continue;
+        }
+        let bound = view.probe.weight_bound(wo);
+        let mut judge = |worth: Worth, wi: Dir, what: &str| {
+            // Below the range of normal numbers a quotient means nothing: f32 denormals carry few bits.
+            let largest = worth.f_cos.into_iter().fold(0.0, f64::max);
+            if largest < if view.probe.single() { 1e-30 } else { 1e-280 } {
+                return;
+            }
+            finding.raise(largest / worth.pdf / bound, || {
+                format!("{what}: f_cos {largest:.6e}, pdf {:.6e}, bound {bound:.6}, wo {}, wi {}", worth.pdf, show(wo), show(wi))
+            });
+        };
+        let draw = view.probe.sample(wo, random.sampler_input(view.probe.single()));
+        match draw.kind {
+            Kind::Continuous => judge(view.probe.eval(wo, draw.wi), draw.wi, "sample"),
+            Kind::Discrete(worth, _) => judge(worth, draw.wi, "discrete"),
+            Kind::Failed => {}
+        }
+        let wi = view.probe.snap(partner(&mut random, wo));
+        judge(view.probe.eval(wo, wi), wi, "pair");
+    }
+    finding
+}

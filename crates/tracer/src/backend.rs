@@ -1,0 +1,46 @@
+//! The choice of a ray-casting backend.
+
+use gonio_accel::{Accel, Brute, Geometry, Obvhs};
+use std::fmt;
+use std::str::FromStr;
+
+/// A ray-casting backend. All find the same hits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Backend {
+    /// Every ray against every triangle: the oracle.
+    Brute,
+    /// A tree built by the `obvhs` crate.
+    Obvhs,
+}
+
+impl Backend {
+    /// All backends of this build.
+    pub const ALL: [Self; 2] = [Self::Brute, Self::Obvhs];
+
+    /// Builds the backend's structure over a geometry.
+    pub fn build(self, geometry: &Geometry) -> Box<dyn Accel> {
+        match self {
+            Self::Brute => Box::new(Brute::new(geometry)),
+            Self::Obvhs => Box::new(Obvhs::new(geometry)),
+        }
+    }
+}
+
+impl fmt::Display for Backend {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Brute => "brute",
+            Self::Obvhs => "obvhs",
+        })
+    }
+}
+
+impl FromStr for Backend {
+    type Err = String;
+    fn from_str(name: &str) -> Result<Self, String> {
+        Self::ALL.into_iter().find(|b| b.to_string() == name).ok_or_else(|| {
+            let known: Vec<_> = Self::ALL.iter().map(|b| format!("\"{b}\"")).collect();
+            format!("there is no backend \"{name}\"; there are {}", known.join(", "))
+        })
+    }
+}

@@ -1,0 +1,308 @@
+//! Pictures on disk: OpenEXR with everything needed to render it again, and PNG to look at.
+//!
+//! Both are written to a temporary file beside the target, which is then renamed: whoever looks at the target sees the
+//! old picture or the whole new one, and a full disk leaves nothing behind.
+
+use std::fs;
+use std::io::{BufWriter, Cursor, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use ::exr::meta::attribute::Chromaticities;
+use ::exr::prelude::{self as exr, ReadChannels, ReadLayers, WritableImage};
+
+
+/// A picture in linear Rec. 709, rows from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Pixels per row, at least 1.
+    pub width: u32,
+    /// Rows, at least 1.
+    pub height: u32,
+    /// Radiance, `width * height` entries.
+    pub rgb: Vec<[f32; 3]>,
+}
+
+/// How a picture came about; stored as EXR attributes of these names with `gonio_` before them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Metadata {
+    /// Version of the renderer; the standard attribute `software` says `gonio` and this.
+    pub version: String,
+    /// Seed of all random numbers; stored as text, because EXR integers have 32 bits.
+    pub seed: u64,
+    /// Samples per pixel.
+    pub spp: u32,
+    /// Scattering events after which a path ends.
+    pub max_depth: u32,
+    /// Ray-casting backend.
+    pub backend: String,
+    /// Number of paths; stored as text.
+    pub samples: u64,
+    /// Seconds spent reading the scene.
+    pub load_seconds: f64,
+    /// Seconds spent building the acceleration structure.
+    pub build_seconds: f64,
+    /// Seconds spent rendering.
+    pub render_seconds: f64,
+    /// Hash of the film's integers, in hexadecimal.
+    pub film_hash: String,
+    /// Further attributes: name and text.
+    pub other: Vec<(String, String)>,
+}
+
+/// Why a picture could not be written or read. It prints as `out/a.exr: cannot be written: …`.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {message}", .path.display())]
+pub struct ImageError {
+    /// The picture's file.
+    pub path: PathBuf,
+    /// What went wrong.
+    pub message: String,
+}
+
+/// Writes linear f32 channels, ZIP compressed, lines in increasing order, equal bytes for equal input.
+///
+/// # Errors
+/// The picture has no pixels or the wrong number of them, or the file cannot be written.
+pub fn write_exr(path: &Path, picture: &Picture, metadata: &Metadata) -> Result<(), ImageError> {
+    check(path, picture)?;
+    let width = picture.width as usize;
+    let channels = exr::SpecificChannels::rgb(|at: exr::Vec2<usize>| {
+        let [r, g, b] = picture.rgb[at.y() * width + at.x()];
+        (r, g, b)
+    });
+    let encoding = exr::Encoding {
+        compression: exr::Compression::ZIP16,
+        blocks: exr::Blocks::ScanLines,
+        line_order: exr::LineOrder::Increasing,
+    };
+    let size = (width, picture.height as usize);
+    let layer = exr::Layer::new(size, layer_attributes(metadata), encoding, channels);
+    let mut image = exr::Image::from_layer(layer);
+    image.attributes.chromaticities = Some(Chromaticities {
+        red: exr::Vec2(0.64, 0.33),
+        green: exr::Vec2(0.30, 0.60),
+        blue: exr::Vec2(0.15, 0.06),
+        white: exr::Vec2(0.3127, 0.3290),
+    });
+    let mut bytes = Vec::new();
+    image
+        .write()
+        .non_parallel() // called from inside a thread pool, a picture is small beside its rendering
+        .to_buffered(Cursor::new(&mut bytes))
+        .map_err(|error| failure(path, format!("cannot be encoded: {error}")))?;
+    sort_attributes(&mut bytes);
+    replace(path, &bytes)
+}
+
+/// Brings the header's attributes into the order of their names: `exr` takes them from a hash map, in an order that
+/// differs between runs. Their total length stays, so every offset in the file stays right.
+fn sort_attributes(file: &mut [u8]) {
+    const START: usize = 8; // after the magic number and the version
+    let mut attributes = Vec::new();
+    let mut rest = file.get(START..).unwrap_or_default();
+    while rest.first().is_some_and(|&byte| byte != 0) {
+        // name, 0, type, 0, size in four bytes, value
+        let mut zeros = rest.iter().enumerate().filter(|(_, byte)| **byte == 0).map(|(at, _)| at);
+        let (Some(_), Some(end_of_type)) = (zeros.next(), zeros.next()) else { return };
+        let Some(size) = rest[end_of_type + 1..].first_chunk() else { return };
+        let Some(length) = (end_of_type + 5).checked_add(u32::from_le_bytes(*size) as usize) else { return };
+        let Some((attribute, after)) = rest.split_at_checked(length) else { return };
+        attributes.push(attribute.to_vec());
+        rest = after;
+    }
+    attributes.sort();
+    let sorted = attributes.concat();
+    file[START..START + sorted.len()].copy_from_slice(&sorted);
+}
+
+fn layer_attributes(metadata: &Metadata) -> exr::LayerAttributes {
+    let mut attributes = exr::LayerAttributes {
+        software_name: Some(text(&format!("gonio {}", metadata.version))),
+        ..exr::LayerAttributes::default()
+    };
+    let strings = [
+        ("version", metadata.version.clone()),
+        ("seed", metadata.seed.to_string()),
+        ("spp", metadata.spp.to_string()),
+        ("max_depth", metadata.max_depth.to_string()),
+        ("backend", metadata.backend.clone()),
+        ("samples", metadata.samples.to_string()),
+        ("film_hash", metadata.film_hash.clone()),
+    ];
+    let numbers = [
+        ("load_seconds", metadata.load_seconds),
+        ("build_seconds", metadata.build_seconds),
+        ("render_seconds", metadata.render_seconds),
+    ];
+    let other = metadata.other.iter().map(|(name, value)| (name.as_str(), value.clone()));
+    let own = |name: &str| text(&format!("gonio_{name}")); // `version` and many more are reserved
+    for (name, value) in strings.into_iter().chain(other) {
+        attributes.other.insert(own(name), exr::AttributeValue::Text(text(&value)));
+    }
+    for (name, value) in numbers {
+        attributes.other.insert(own(name), exr::AttributeValue::F64(value));
+    }
+    attributes
+}
+
+/// EXR texts hold single bytes; anything else becomes `?`.
+fn text(string: &str) -> exr::Text {
+    let plain: String = string.chars().map(|c| if c.is_ascii() { c } else { '?' }).collect();
+    exr::Text::new_or_none(plain).unwrap_or_default()
+}
+
+/// Writes an 8-bit sRGB PNG of the picture brightened by `exposure` stops.
+///
+/// Values are clamped to [0, 1]; a value that is not a number is black.
+///
+/// # Errors
+/// The picture has no pixels or the wrong number of them, or the file cannot be written.
+pub fn write_png(path: &Path, picture: &Picture, exposure: f32) -> Result<(), ImageError> {
+    check(path, picture)?;
+    let gain = exposure.exp2();
+    let encoded: Vec<u8> = picture.rgb.iter().flatten().map(|&value| encode_srgb(value * gain)).collect();
+    let mut bytes = Vec::new();
+    let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
+    let kind = image::ExtendedColorType::Rgb8;
+    image::ImageEncoder::write_image(encoder, &encoded, picture.width, picture.height, kind)
+        .map_err(|error| failure(path, format!("cannot be encoded: {error}")))?;
+    replace(path, &bytes)
+}
+
+/// IEC 61966-2-1, encoding, rounded to the nearest of 256 levels.
+fn encode_srgb(linear: f32) -> u8 {
+    let x = if linear > 0.0 { linear.min(1.0) } else { 0.0 }; // NaN > 0 is false: black
+    let encoded = if x <= 0.003_130_8 { x * 12.92 } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
+    (encoded * 255.0 + 0.5) as u8
+}
+
+/// Reads the first layer that has channels R, G and B, as f32.
+///
+/// # Errors
+/// The file cannot be read, or no layer has these channels.
+pub fn read_exr(path: &Path) -> Result<Picture, ImageError> {
+    let image = exr::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgb_channels(
+            |size, _| (size.width(), vec![[0.0_f32; 3]; size.width() * size.height()]),
+            |(width, pixels), at, (r, g, b): (f32, f32, f32)| pixels[at.y() * *width + at.x()] = [r, g, b],
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .from_file(path)
+        .map_err(|error| failure(path, format!("cannot be read: {error}")))?;
+    let size = image.layer_data.size;
+    let (_, rgb) = image.layer_data.channel_data.pixels;
+    match (u32::try_from(size.width()), u32::try_from(size.height())) {
+        (Ok(width), Ok(height)) => Ok(Picture { width, height, rgb }),
+        _ => Err(failure(path, "is too large")),
+    }
+}
+
+fn check(path: &Path, picture: &Picture) -> Result<(), ImageError> {
+    let count = u64::from(picture.width) * u64::from(picture.height);
+    if count == 0 || count != picture.rgb.len() as u64 {
+        let (width, height, found) = (picture.width, picture.height, picture.rgb.len());
+        return Err(failure(path, format!("a picture of {width} x {height} cannot have {found} pixels")));
+    }
+    Ok(())
+}
+
+fn failure(path: &Path, message: impl Into<String>) -> ImageError {
+    ImageError { path: path.to_path_buf(), message: message.into() }
+}
+
+/// Puts a whole file in place of `path`, or changes nothing.
+fn replace(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
+    static COUNTER: AtomicU32 = AtomicU32::new(0); // two threads may write the same target
+    let Some(name) = path.file_name() else {
+        return Err(failure(path, "cannot be written: it names no file"));
+    };
+    let number = COUNTER.fetch_add(1, Ordering::Relaxed);
+    let unique = format!(".{}.{}-{number}.tmp", name.to_string_lossy(), std::process::id());
+    let temporary = path.with_file_name(unique);
+    write_through(&temporary, bytes).and_then(|()| fs::rename(&temporary, path)).map_err(|error| {
+        let _ = fs::remove_file(&temporary); // it may not exist; the first error is the one to tell
+        failure(path, format!("cannot be written: {error}"))
+    })
+}
+
+fn write_through(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let mut file = BufWriter::new(fs::File::options().write(true).create_new(true).open(path)?);
+    file.write_all(bytes)?;
+    file.into_inner()?.sync_all() // a full disk may only be noticed here
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture() -> Picture {
+        let rgb = (0..15).map(|i| [i as f32, 1e-9 * i as f32, 1e9]).collect();
+        Picture { width: 5, height: 3, rgb }
+    }
+
+    fn folder(name: &str) -> PathBuf {
+        let path = std::env::temp_dir().join(format!("gonio-image-{name}-{}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        path
+    }
+
+    #[test]
+    fn an_exr_returns_every_bit_and_its_history() {
+        let folder = folder("exr");
+        let path = folder.join("a.exr");
+        let seed = u64::MAX;
+        let other = vec![("scene".to_owned(), "caf\u{e9}.toml".to_owned())];
+        let metadata =
+            Metadata { version: "1.2.3".to_owned(), seed, render_seconds: 0.5, other, ..Metadata::default() };
+        write_exr(&path, &picture(), &metadata).unwrap();
+        let bytes = fs::read(&path).unwrap();
+        assert_eq!(read_exr(&path).unwrap(), picture());
+        write_exr(&path, &picture(), &metadata).unwrap(); // over the old one, with the same bytes
+        assert!(fs::read(&path).unwrap() == bytes, "the same picture has the same bytes");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "no temporary file is left");
+
+        let meta = ::exr::meta::MetaData::read_from_file(&path, true).unwrap();
+        let header = &meta.headers[0];
+        assert_eq!(header.line_order, exr::LineOrder::Increasing);
+        assert_eq!(header.compression, exr::Compression::ZIP16);
+        assert_eq!(header.shared_attributes.chromaticities.unwrap().red, exr::Vec2(0.64, 0.33));
+        assert_eq!(header.own_attributes.software_name.as_ref().unwrap().to_string(), "gonio 1.2.3");
+        let attribute = |name: &str| header.own_attributes.other.get(&text(name)).cloned();
+        assert_eq!(attribute("gonio_seed"), Some(exr::AttributeValue::Text(text("18446744073709551615"))));
+        assert_eq!(attribute("gonio_render_seconds"), Some(exr::AttributeValue::F64(0.5)));
+        assert_eq!(attribute("gonio_scene"), Some(exr::AttributeValue::Text(text("caf?.toml"))));
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_png_has_srgb_values_of_the_exposed_picture() {
+        let folder = folder("png");
+        let path = folder.join("a.png");
+        let rgb = vec![[0.0, 0.25, 0.5], [-1.0, f32::NAN, f32::INFINITY]];
+        write_png(&path, &Picture { width: 2, height: 1, rgb }, 1.0).unwrap();
+        let read = image::open(&path).unwrap().into_rgb8();
+        assert_eq!(read.as_raw().as_slice(), [0, 188, 255, 0, 0, 255]); // 0.25 twice as bright: 0.5 is 187.5 of 255
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn encoding_undoes_decoding() {
+        let texture = |byte| crate::texture::Texture::from_srgb8(1, 1, vec![[byte; 3]]).unwrap();
+        for byte in 0..=255 {
+            assert_eq!(encode_srgb(texture(byte).sample(0.0, 0.0).r), byte);
+        }
+    }
+
+    #[test]
+    fn pictures_of_the_wrong_size_are_refused() {
+        let picture = Picture { width: 2, height: 2, rgb: vec![[0.0; 3]; 3] };
+        let error = write_exr(Path::new("a.exr"), &picture, &Metadata::default()).unwrap_err();
+        assert_eq!(error.to_string(), "a.exr: a picture of 2 x 2 cannot have 3 pixels");
+        let error = read_exr(Path::new("absent.exr")).unwrap_err().to_string();
+        assert!(error.starts_with("absent.exr: cannot be read: "), "{error}");
+    }
+}

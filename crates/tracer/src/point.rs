@@ -1,0 +1,123 @@
+//! Shading points: where eight paths met the world, and in which frame they are shaded.
+
+use crate::plan::Plan;
+use crate::queue::Batch;
+use crate::world::{Triangle, World};
+use gonio_accel::Hit8;
+use gonio_kernel::{F32x8, Frame, Mask, Mask8, Real, Vec3};
+
+/// Error bound of a position formed from barycentrics, in units of the sum of its absolute terms: two roundings for the
+/// weight of the first corner, three for products and sums, one for adding the offset, and room for the offset's own.
+const POSITION_ERROR: f32 = 10.0 / 16_777_216.0;
+
+/// A point of a triangle, and how far it can be from the exact plane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SurfacePoint {
+    pub(crate) position: Vec3<F32x8>,
+    error: Vec3<F32x8>,
+}
+
+impl SurfacePoint {
+    /// From barycentrics on the corners, never from o + t·d: the error does not grow with the distance travelled.
+    #[inline(always)]
+    pub(crate) fn new(corners: &[Vec3<F32x8>; 3], bary: [F32x8; 2]) -> Self {
+        let [b1, b2] = bary;
+        let b0 = F32x8::ONE - b1 - b2;
+        let blend = |c: [Vec3<F32x8>; 3]| (c[0] * b0).along(b1, c[1]).along(b2, c[2]);
+        let error = blend(corners.map(Vec3::abs)) * F32x8::splat(POSITION_ERROR);
+        Self { position: blend(*corners), error }
+    }
+
+    /// The point moved off the plane to the side that the unit normal n points to, by at least its error.
+    #[inline(always)]
+    pub(crate) fn off_plane(&self, n: Vec3<F32x8>) -> Vec3<F32x8> {
+        self.position.along(self.error.dot(n.abs()), n)
+    }
+}
+
+/// Eight shading points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShadingPoints {
+    pub(crate) point: SurfacePoint,
+    /// Geometric normal, unit, on wo's side.
+    pub(crate) normal: Vec3<F32x8>,
+    /// Shading frame, on wo's side.
+    pub(crate) frame: Frame<F32x8>,
+    /// Where the ray came from the side that the winding faces.
+    pub(crate) front: Mask8,
+    /// cos between wo and the geometric normal, ≥ 0.
+    pub(crate) cos_geometric: F32x8,
+    /// Distance travelled.
+    pub(crate) t: F32x8,
+    /// Texture coordinates, 0 without.
+    pub(crate) uv: [F32x8; 2],
+    /// Index into the world's materials.
+    pub(crate) material: [u32; F32x8::LANES],
+}
+
+impl ShadingPoints {
+    /// Looks up the hits of a batch; wo points back along the rays.
+    #[inline(always)]
+    pub(crate) fn new(world: &World, plan: Plan, batch: &Batch, hits: &[Hit8], wo: Vec3<F32x8>) -> Self {
+        let bary = [0, 1].map(|i| batch.gather(hits, |h| &h.bary[i]));
+        let t = batch.gather(hits, |h| &h.t);
+        let prim = batch.gather_int(hits, |h| &h.prim);
+        let instance = batch.gather_int(hits, |h| &h.instance);
+        let index: [usize; F32x8::LANES] = std::array::from_fn(|l| world.triangle_index(instance[l], prim[l]));
+        let triangles: [&Triangle; F32x8::LANES] = index.map(|i| &world.triangles[i]);
+
+        let real = |f: &dyn Fn(&Triangle) -> f32| F32x8::new(triangles.map(f));
+        let corners = [0, 1, 2].map(|c| {
+            Vec3::new(real(&|t| t.corners[c].x), real(&|t| t.corners[c].y), real(&|t| t.corners[c].z))
+        });
+        let (e1, e2) = (corners[1] - corners[0], corners[2] - corners[0]);
+        let winding = e1.cross(e2).normalize_or(wo); // a triangle too small for its normal faces the viewer
+        let cos = winding.dot(wo);
+        let front = cos.ge(F32x8::ZERO);
+        let side = F32x8::ONE.copysign(cos);
+        let normal = winding * side;
+
+        let mut shading = normal;
+        if plan.smooth_normals {
+            let corner = |c: usize| {
+                let n: [Vec3<f32>; F32x8::LANES] =
+                    index.map(|i| world.normals.get(i).map_or(Vec3::new(0.0, 0.0, 0.0), |n| n[c]));
+                Vec3::new(F32x8::new(n.map(|n| n.x)), F32x8::new(n.map(|n| n.y)), F32x8::new(n.map(|n| n.z)))
+            };
+            let b0 = F32x8::ONE - bary[0] - bary[1];
+            let n = ((corner(0) * b0).along(bary[0], corner(1)).along(bary[1], corner(2)) * side).normalize_or(normal);
+            // A shading normal that does not face the viewer, or that leans behind the surface, is of no use.
+            let usable = n.dot(wo).gt(F32x8::ZERO) & n.dot(normal).gt(F32x8::ZERO);
+            shading = Vec3::select(usable, n, normal);
+        }
+
+        let mut uv = [F32x8::ZERO; 2];
+        let mut frame = Frame::from_normal(shading);
+        if (plan.textures || plan.tangents) && !world.uvs.is_empty() {
+            let at = |c: usize, k: usize| F32x8::new(index.map(|i| world.uvs[i][c][k]));
+            let [u, v] = [0, 1].map(|k| [at(0, k), at(1, k), at(2, k)]);
+            let b0 = F32x8::ONE - bary[0] - bary[1];
+            let blend = |x: [F32x8; 3]| b0.mul_add(x[0], bary[0].mul_add(x[1], bary[1] * x[2]));
+            uv = [blend(u), blend(v)];
+            let anisotropic = Mask8::from_bits(
+                (0..F32x8::LANES).fold(0, |bits, l| {
+                    bits | u32::from(world.materials[triangles[l].material as usize].anisotropic) << l
+                }),
+            );
+            if plan.tangents && anisotropic.any() {
+                // ∂p/∂u up to a positive factor: solve e₁ = Δu₁ ∂u + Δv₁ ∂v, e₂ likewise.
+                let (dv1, dv2) = (v[1] - v[0], v[2] - v[0]);
+                let det = (u[1] - u[0]) * dv2 - (u[2] - u[0]) * dv1;
+                let tangent = (e1 * dv2 - e2 * dv1) * F32x8::ONE.copysign(det);
+                let along = Frame::from_normal_tangent(shading, tangent);
+                frame = Frame {
+                    x: Vec3::select(anisotropic, along.x, frame.x),
+                    y: Vec3::select(anisotropic, along.y, frame.y),
+                    z: frame.z,
+                };
+            }
+        }
+        let material = triangles.map(|t| t.material);
+        Self { point: SurfacePoint::new(&corners, bary), normal, frame, front, cos_geometric: cos.abs(), t, uv, material }
+    }
+}

@@ -1,0 +1,166 @@
+//! Queues of path states: the rays of one bounce, what each path carries, and the order in which they are shaded.
+//!
+//! A tile's paths advance together, one stage at a time. Rays and states lie in blocks of eight, as the casting stage wants
+//! them; the shading stage reads them through a list sorted by material, so that its eights are full and alike, and writes
+//! new blocks in that order. Dead lanes are left behind by the next sort.
+
+use gonio_accel::{Hit8, NO_HIT, Ray8};
+use gonio_kernel::{F32x8, Mask8, Rgb, U32x8};
+
+/// What eight paths carry besides their rays.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Paths {
+    /// The product of all weights so far.
+    pub(crate) throughput: Rgb<F32x8>,
+    /// Density with which scattering chose this ray; 0 after the camera or a discrete event.
+    pub(crate) pdf: F32x8,
+    /// Density with which a light sample would have chosen this direction in the environment.
+    pub(crate) pdf_environment: F32x8,
+    /// Which path of the tile.
+    pub(crate) path: U32x8,
+}
+
+/// The rays of one bounce.
+#[derive(Debug, Default)]
+pub(crate) struct Queue {
+    pub(crate) rays: Vec<Ray8>,
+    pub(crate) paths: Vec<Paths>,
+}
+
+/// Shadow rays, and what arrives if nothing is in the way.
+#[derive(Debug, Default)]
+pub(crate) struct ShadowQueue {
+    pub(crate) rays: Vec<Ray8>,
+    pub(crate) arriving: Vec<Rgb<F32x8>>,
+    pub(crate) path: Vec<U32x8>,
+}
+
+/// Live lanes in the order of their keys.
+#[derive(Debug, Default)]
+pub(crate) struct Order {
+    /// Lane numbers: block · 8 + lane.
+    pub(crate) lanes: Vec<u32>,
+    /// Where each key's lanes start in `lanes`, and where the last one's end.
+    pub(crate) starts: Vec<u32>,
+    keys: Vec<u32>,
+}
+
+impl Queue {
+    pub(crate) fn clear(&mut self) {
+        self.rays.clear();
+        self.paths.clear();
+    }
+
+    pub(crate) fn push(&mut self, ray: Ray8, paths: Paths) {
+        self.rays.push(ray);
+        self.paths.push(paths);
+    }
+}
+
+impl ShadowQueue {
+    pub(crate) fn clear(&mut self) {
+        self.rays.clear();
+        self.arriving.clear();
+        self.path.clear();
+    }
+}
+
+impl Order {
+    /// Counting sort of the live lanes: key 0 is a miss, key 1 + m a hit on material m < `materials`. Stable.
+    pub(crate) fn sort(
+        &mut self,
+        rays: &[Ray8],
+        hits: &[Hit8],
+        materials: usize,
+        material_of: impl Fn(u32, u32) -> u32,
+    ) {
+        const DEAD: u32 = u32::MAX;
+        self.starts.clear();
+        self.starts.resize(materials + 2, 0);
+        self.keys.clear();
+        for (ray, hit) in rays.iter().zip(hits) {
+            let (live, prim, instance) = (ray.mask.to_bits(), hit.prim.to_array(), hit.instance.to_array());
+            for lane in 0..F32x8::LANES {
+                let key = match prim[lane] {
+                    _ if live >> lane & 1 == 0 => DEAD,
+                    NO_HIT => 0,
+                    prim => 1 + material_of(instance[lane], prim),
+                };
+                if key != DEAD {
+                    self.starts[key as usize + 1] += 1;
+                }
+                self.keys.push(key);
+            }
+        }
+        let mut total = 0;
+        for start in &mut self.starts {
+            total += *start;
+            *start = total;
+        }
+        // starts[k] is now where key k begins; while placing, it runs to where k ends, which is where k + 1 begins.
+        self.lanes.clear();
+        self.lanes.resize(total as usize, 0);
+        for (lane, &key) in self.keys.iter().enumerate().filter(|(_, key)| **key != DEAD) {
+            let place = &mut self.starts[key as usize];
+            self.lanes[*place as usize] = lane as u32;
+            *place += 1;
+        }
+        self.starts.rotate_right(1);
+        self.starts[0] = 0;
+    }
+
+    /// The lanes of keys `from..to`.
+    pub(crate) fn range(&self, from: usize, to: usize) -> &[u32] {
+        &self.lanes[self.starts[from] as usize..self.starts[to] as usize]
+    }
+}
+
+/// Eight lanes scattered over a queue. In a batch that is not full, the rest repeats its last lane and is not live.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Batch {
+    pub(crate) lanes: [u32; F32x8::LANES],
+    pub(crate) live: Mask8,
+}
+
+impl Batch {
+    /// One to eight lanes.
+    pub(crate) fn new(lanes: &[u32]) -> Self {
+        let last = lanes.len().saturating_sub(1);
+        Self { lanes: std::array::from_fn(|i| lanes[i.min(last)]), live: Mask8::first(lanes.len()) }
+    }
+
+    /// A field of each lane's block, brought together.
+    #[inline(always)]
+    pub(crate) fn gather<B>(&self, blocks: &[B], field: impl Fn(&B) -> &F32x8) -> F32x8 {
+        F32x8::new(self.lanes.map(|l| field(&blocks[l as usize / F32x8::LANES]).to_array()[l as usize % F32x8::LANES]))
+    }
+
+    /// An integer field of each lane's block, brought together.
+    #[inline(always)]
+    pub(crate) fn gather_int<B>(&self, blocks: &[B], field: impl Fn(&B) -> &U32x8) -> [u32; F32x8::LANES] {
+        self.lanes.map(|l| field(&blocks[l as usize / F32x8::LANES]).to_array()[l as usize % F32x8::LANES])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gonio_kernel::{Real, Vec3};
+
+    #[test]
+    fn the_order_is_by_key_then_lane_and_leaves_out_the_dead() {
+        let zero = Vec3::new(F32x8::ZERO, F32x8::ZERO, F32x8::ONE);
+        let mut rays = [Ray8::new(zero, zero); 2];
+        rays[1].mask = Mask8::from_bits(0b0000_0101);
+        let mut hits = [Hit8::miss(); 2];
+        hits[0].prim = U32x8::new([4, 1, NO_HIT, 4, 1, 0, NO_HIT, 2]);
+        hits[1].prim = U32x8::new([1, 9, NO_HIT, 9, 9, 9, 9, 9]);
+        let mut order = Order::default();
+        order.sort(&rays, &hits, 5, |_, prim| prim);
+        assert_eq!(order.lanes, [2, 6, 10, 5, 1, 4, 8, 7, 0, 3]);
+        assert_eq!(order.range(0, 1), [2, 6, 10]);
+        assert_eq!(order.range(2, 3), [1, 4, 8]);
+        assert_eq!(order.range(4, 5), [0; 0]);
+        assert_eq!(order.range(1, 6).len(), 7);
+    }
+}

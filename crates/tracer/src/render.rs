@@ -1,0 +1,307 @@
+//! Rendering: tiles of paths through the stages, passes of samples over the film.
+//!
+//! A tile's paths for a few samples form one queue of at most [`QUEUE`] states, small enough for the second-level cache.
+//! Stages: generate, then per bounce closest hit, sort by material, shade, shadow rays; then the film. Tiles are
+//! independent and sums are integers, so threads and order change nothing.
+
+use crate::film::{self, Pixel};
+use crate::image::Picture;
+use crate::plan::Plan;
+use crate::queue::{Batch, Order, Paths, Queue, ShadowQueue};
+use crate::sampler::{Purpose, Sampler};
+use crate::scene::Scene;
+use crate::shade::{self, Context, Tile};
+use crate::stats::{LargeSample, RenderStats, TileStats};
+use crate::world::{World, splat};
+use gonio_accel::{Accel, Hit8, Ray8, RayKind};
+use gonio_kernel::{F32x8, Mask8, Real, Rgb, U32x8};
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// Pixels along a tile's edge.
+const TILE: u32 = 16;
+/// Most paths in a tile's queue: 16 × 16 pixels, eight samples each.
+const QUEUE: usize = 2048;
+/// Samples per pixel between two reports of progress.
+const PASS: u32 = 16;
+
+/// A rectangle of pixels, half open. Each pixel keeps the random numbers it has in the whole picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// First column.
+    pub x0: u32,
+    /// One past the last column.
+    pub x1: u32,
+    /// First row.
+    pub y0: u32,
+    /// One past the last row.
+    pub y1: u32,
+}
+
+/// How to render a world.
+#[derive(Clone, Copy, Debug)]
+pub struct RenderSettings {
+    /// Samples per pixel, 1 to 2²⁰.
+    pub spp: u32,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Scattering events after which a path ends.
+    pub max_depth: u32,
+    /// Whether faint paths end by chance from the fifth scattering event on (unbiased).
+    pub russian_roulette: bool,
+    /// Threads; 0 for all that the machine has.
+    pub threads: usize,
+    /// The part of the picture to render; `None` for all of it.
+    pub crop: Option<Crop>,
+    /// Which effects to look at; at least the world's own plan.
+    pub plan: Plan,
+}
+
+impl RenderSettings {
+    /// What the scene asks for, with the world's own plan.
+    pub fn of(scene: &Scene, world: &World) -> Self {
+        Self {
+            spp: scene.film.spp,
+            seed: scene.integrator.seed,
+            max_depth: scene.integrator.max_depth,
+            russian_roulette: scene.integrator.russian_roulette,
+            threads: 0,
+            crop: None,
+            plan: world.plan(),
+        }
+    }
+}
+
+/// How far a render has come.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Samples per pixel done.
+    pub spp_done: u32,
+    /// Samples per pixel in all.
+    pub spp: u32,
+    /// Samples done.
+    pub samples: u64,
+    /// Since the render began [s].
+    pub seconds: f64,
+}
+
+/// A picture and how it was made.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// The mean radiance of each pixel.
+    pub picture: Picture,
+    /// Counts and times.
+    pub stats: RenderStats,
+}
+
+/// A square of the film and its sums.
+struct FilmTile {
+    x0: u32,
+    y0: u32,
+    width: u32,
+    pixels: Vec<Pixel>,
+    stats: TileStats,
+}
+
+/// Renders the world; `progress` is called after each pass, on the calling thread.
+///
+/// # Panics
+/// Never for a world and settings in their domains; a thread pool that cannot be made falls back to the global one.
+pub fn render(
+    world: &World,
+    accel: &dyn Accel,
+    settings: &RenderSettings,
+    progress: &mut dyn FnMut(Progress),
+) -> Rendering {
+    let start = Instant::now();
+    let film = world.film;
+    let whole = Crop { x0: 0, x1: film.width, y0: 0, y1: film.height };
+    let crop = settings.crop.unwrap_or(whole);
+    let ctx = Context {
+        world,
+        plan: settings.plan,
+        sampler: Sampler::new(settings.seed),
+        max_depth: settings.max_depth,
+        russian_roulette: settings.russian_roulette,
+    };
+    let mut tiles = tiles_of(crop);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build().ok();
+    let threads = pool.as_ref().map_or_else(rayon::current_num_threads, rayon::ThreadPool::current_num_threads);
+    let mut done = 0;
+    while done < settings.spp {
+        let samples = done..(done + PASS).min(settings.spp);
+        let mut pass = || {
+            tiles
+                .par_iter_mut()
+                .for_each_init(TileWorker::default, |worker, tile| worker.render(&ctx, accel, tile, samples.clone()));
+        };
+        match &pool {
+            Some(pool) => pool.install(pass),
+            None => pass(),
+        }
+        done = samples.end;
+        let pixels = u64::from(crop.x1 - crop.x0) * u64::from(crop.y1 - crop.y0);
+        progress(Progress {
+            spp_done: done,
+            spp: settings.spp,
+            samples: pixels * u64::from(done),
+            seconds: start.elapsed().as_secs_f64(),
+        });
+    }
+    develop(crop, &tiles, threads, start)
+}
+
+/// The crop cut into tiles, row by row.
+fn tiles_of(crop: Crop) -> Vec<FilmTile> {
+    let mut tiles = Vec::new();
+    for y0 in (crop.y0..crop.y1).step_by(TILE as usize) {
+        for x0 in (crop.x0..crop.x1).step_by(TILE as usize) {
+            let (width, height) = (TILE.min(crop.x1 - x0), TILE.min(crop.y1 - y0));
+            let pixels = vec![Pixel::default(); (width * height) as usize];
+            tiles.push(FilmTile { x0, y0, width, pixels, stats: TileStats::default() });
+        }
+    }
+    tiles
+}
+
+/// The tiles put together.
+fn develop(crop: Crop, tiles: &[FilmTile], threads: usize, start: Instant) -> Rendering {
+    let (width, height) = (crop.x1 - crop.x0, crop.y1 - crop.y0);
+    let mut pixels = vec![Pixel::default(); width as usize * height as usize];
+    let mut stats = TileStats::default();
+    for tile in tiles {
+        stats.add(&tile.stats);
+        for (row, line) in tile.pixels.chunks(tile.width as usize).enumerate() {
+            let at = (tile.y0 - crop.y0) as usize * width as usize
+                + row * width as usize
+                + (tile.x0 - crop.x0) as usize;
+            pixels[at..at + line.len()].copy_from_slice(line);
+        }
+    }
+    let dropped = pixels.iter().map(|p| u64::from(p.dropped())).sum();
+    let rgb = pixels.iter().map(Pixel::mean).collect();
+    Rendering {
+        picture: Picture { width, height, rgb },
+        stats: stats.finish(start.elapsed().as_secs_f64(), dropped, film::hash(pixels.iter()), threads),
+    }
+}
+
+/// The queues of one thread, kept from tile to tile.
+#[derive(Default)]
+struct TileWorker {
+    queue: Queue,
+    next: Queue,
+    shadow: ShadowQueue,
+    order: Order,
+    hits: Vec<Hit8>,
+    blocked: Vec<Mask8>,
+    pixel: Vec<u32>,
+    sample: Vec<u32>,
+    radiance: Vec<[f32; 3]>,
+}
+
+impl TileWorker {
+    fn render(&mut self, ctx: &Context, accel: &dyn Accel, tile: &mut FilmTile, samples: std::ops::Range<u32>) {
+        let per_queue = (QUEUE / tile.pixels.len().max(1)).clamp(1, QUEUE) as u32;
+        let mut first = samples.start;
+        while first < samples.end {
+            let count = per_queue.min(samples.end - first);
+            self.generate(ctx, tile, first, count);
+            self.trace(ctx, accel, &mut tile.stats);
+            for ((rgb, &pixel), &sample) in self.radiance.iter().zip(&self.pixel).zip(&self.sample) {
+                let (x, y) = (pixel & 0xffff, pixel >> 16);
+                let at = (y - tile.y0) * tile.width + (x - tile.x0);
+                tile.pixels[at as usize].add(*rgb, pixel, sample);
+                tile.stats.note(*rgb, || LargeSample { value: 0.0, x, y, sample });
+            }
+            tile.stats.samples += self.radiance.len() as u64;
+            first += count;
+        }
+    }
+
+    /// Camera rays: the samples of a pixel lie side by side, so that eight rays are nearly one.
+    fn generate(&mut self, ctx: &Context, tile: &FilmTile, first: u32, count: u32) {
+        self.queue.clear();
+        self.pixel.clear();
+        self.sample.clear();
+        for at in 0..tile.pixels.len() as u32 {
+            let (x, y) = (tile.x0 + at % tile.width, tile.y0 + at / tile.width);
+            self.pixel.extend((0..count).map(|_| x | y << 16));
+            self.sample.extend(first..first + count);
+        }
+        self.radiance.clear();
+        self.radiance.resize(self.pixel.len(), [0.0; 3]);
+
+        let film = ctx.world.film;
+        let (width, height) = (F32x8::splat(film.width as f32), F32x8::splat(film.height as f32));
+        let two = F32x8::splat(2.0);
+        for start in (0..self.pixel.len()).step_by(F32x8::LANES) {
+            let lanes = (self.pixel.len() - start).min(F32x8::LANES);
+            let path: [u32; F32x8::LANES] = std::array::from_fn(|l| (start + l.min(lanes - 1)) as u32);
+            let pixel = U32x8::new(path.map(|p| self.pixel[p as usize]));
+            let sample = U32x8::new(path.map(|p| self.sample[p as usize]));
+            let u = ctx.sampler.draw(pixel, sample, 0, Purpose::Camera);
+            let x = ((pixel & U32x8::splat(0xffff)).to_real() + u.unit(0)) * two / width - F32x8::ONE;
+            let y = F32x8::ONE - ((pixel >> 16).to_real() + u.unit(1)) * two / height;
+            let ray = Ray8::new(splat(ctx.world.view.origin), ctx.world.view.directions(x, y));
+            self.queue.push(
+                Ray8 { mask: Mask8::first(lanes), ..ray },
+                Paths {
+                    throughput: Rgb::splat(F32x8::ONE),
+                    pdf: F32x8::ZERO,
+                    pdf_environment: F32x8::ZERO,
+                    path: U32x8::new(path),
+                },
+            );
+        }
+    }
+
+    /// The path loop: every path of the queue to its end.
+    fn trace(&mut self, ctx: &Context, accel: &dyn Accel, stats: &mut TileStats) {
+        let materials = &ctx.world.materials;
+        for depth in 0..=ctx.max_depth {
+            if self.queue.rays.is_empty() {
+                break;
+            }
+            let kind = if depth == 0 { RayKind::Coherent } else { RayKind::Incoherent };
+            self.hits.resize(self.queue.rays.len(), Hit8::miss());
+            accel.closest(kind, &self.queue.rays, &mut self.hits);
+            let material_of = |instance, prim| ctx.world.triangles[ctx.world.triangle_index(instance, prim)].material;
+            self.order.sort(&self.queue.rays, &self.hits, materials.len(), material_of);
+            stats.closest_rays += self.order.lanes.len() as u64;
+
+            self.next.clear();
+            self.shadow.clear();
+            let mut tile = Tile { pixel: &self.pixel, sample: &self.sample, radiance: &mut self.radiance };
+            if ctx.plan.environment {
+                for lanes in self.order.range(0, 1).chunks(F32x8::LANES) {
+                    shade::miss(ctx, &Batch::new(lanes), &self.queue, &mut tile);
+                }
+            }
+            let mut from = 0;
+            while from < materials.len() {
+                let variant = materials[from].variant;
+                let to = from + materials[from..].iter().take_while(|m| m.variant == variant).count();
+                for lanes in self.order.range(1 + from, 1 + to).chunks(F32x8::LANES) {
+                    let found = (&self.queue, &self.hits[..]);
+                    let batch = Batch::new(lanes);
+                    let used =
+                        shade::hit(ctx, depth, &batch, found, &mut tile, &mut self.shadow, &mut self.next);
+                    stats.closure_lanes += u64::from(used);
+                    stats.closure_calls += u64::from(used > 0);
+                }
+                from = to;
+            }
+
+            self.blocked.resize(self.shadow.rays.len(), Mask8::first(0));
+            accel.occluded(RayKind::Incoherent, &self.shadow.rays, None, &mut self.blocked);
+            for (((ray, blocked), light), path) in
+                self.shadow.rays.iter().zip(&self.blocked).zip(&self.shadow.arriving).zip(&self.shadow.path)
+            {
+                stats.shadow_rays += u64::from(ray.mask.to_bits().count_ones());
+                tile.gather(path.to_array(), ray.mask & !*blocked, *light);
+            }
+            std::mem::swap(&mut self.queue, &mut self.next);
+        }
+    }
+}

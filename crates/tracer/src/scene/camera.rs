@@ -1,0 +1,95 @@
+//! The camera of a scene that has none, and the parts of it that a scene leaves open.
+
+use glam::DVec3;
+
+use super::Camera;
+
+/// Vertical field of view in degrees: about a 50 mm lens on 35 mm film held upright.
+const VFOV: f64 = 40.0;
+/// From the target to the camera: right, above and in front, with y up.
+const THREE_QUARTER: DVec3 = DVec3::new(0.6, 0.45, 1.0);
+/// Room around the scene.
+const MARGIN: f64 = 1.08;
+
+/// What a scene says about its camera.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct CameraSpec {
+    pub(super) origin: Option<DVec3>,
+    pub(super) target: Option<DVec3>,
+    pub(super) up: Option<DVec3>,
+    pub(super) vfov: Option<f64>,
+}
+
+impl CameraSpec {
+    /// Fills in the rest: the target is the middle of the scene, the origin a place from which all of it is seen.
+    ///
+    /// `aspect` is width over height.
+    ///
+    /// # Errors
+    /// A sentence: the view direction has no length, or `up` is parallel to it.
+    pub(super) fn complete(self, bounds: [DVec3; 2], aspect: f64) -> Result<Camera, String> {
+        let up = self.up.unwrap_or(DVec3::Y);
+        let vfov = self.vfov.unwrap_or(VFOV);
+        let target = self.target.unwrap_or((bounds[0] + bounds[1]) * 0.5);
+        let origin = self.origin.unwrap_or_else(|| framing(target, up, vfov, bounds, aspect));
+        let view = (target - origin).try_normalize().ok_or("\"origin\" and \"target\" of the camera are the same point")?;
+        let sideways = view.cross(up.try_normalize().ok_or("\"up\" of the camera has no length")?);
+        if sideways.length() < 1e-6 {
+            return Err("\"up\" of the camera is parallel to the view direction".to_owned());
+        }
+        Ok(Camera { origin, target, up, vfov })
+    }
+}
+
+/// The nearest place in the three-quarter direction from which all corners of the bounds are in the picture.
+fn framing(target: DVec3, up: DVec3, vfov: f64, bounds: [DVec3; 2], aspect: f64) -> DVec3 {
+    let back = THREE_QUARTER.normalize();
+    let right = up.cross(back).normalize_or(DVec3::X);
+    let top = back.cross(right);
+    let tan_y = (vfov.to_radians() * 0.5).tan() / MARGIN;
+    let tan_x = tan_y * aspect;
+    let mut distance = 0.0_f64;
+    for corner in 0..8 {
+        let pick = |axis: usize| bounds[(corner >> axis) & 1][axis];
+        let offset = DVec3::new(pick(0), pick(1), pick(2)) - target;
+        let needed = (offset.dot(right).abs() / tan_x).max(offset.dot(top).abs() / tan_y);
+        distance = distance.max(offset.dot(back) + needed);
+    }
+    target + back * distance
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_automatic_camera_sees_every_corner() {
+        for aspect in [0.25, 1.0, 4.0] {
+            for vfov in [5.0, 40.0, 120.0] {
+                let bounds = [DVec3::new(4e6, -1.0, 2.0), DVec3::new(4e6 + 3.0, 5.0, 2.5)];
+                let spec = CameraSpec { vfov: Some(vfov), ..CameraSpec::default() };
+                let camera = spec.complete(bounds, aspect).unwrap();
+                let view = (camera.target - camera.origin).normalize();
+                let right = view.cross(camera.up).normalize();
+                let top = right.cross(view);
+                let tan = (vfov.to_radians() * 0.5).tan();
+                for corner in 0..8 {
+                    let p = DVec3::from_array(std::array::from_fn(|axis| bounds[(corner >> axis) & 1][axis]));
+                    let d = p - camera.origin;
+                    assert!(d.dot(view) > 0.0);
+                    assert!((d.dot(top) / d.dot(view)).abs() <= tan);
+                    assert!((d.dot(right) / d.dot(view)).abs() <= tan * aspect);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_camera_without_a_direction_is_refused() {
+        let bounds = [DVec3::ZERO, DVec3::ONE];
+        let same = CameraSpec { origin: Some(DVec3::ONE), target: Some(DVec3::ONE), ..CameraSpec::default() };
+        assert!(same.complete(bounds, 1.0).unwrap_err().contains("same point"));
+        let above = CameraSpec { origin: Some(DVec3::Y), target: Some(DVec3::ZERO), ..CameraSpec::default() };
+        assert!(above.complete(bounds, 1.0).unwrap_err().contains("parallel"));
+    }
+}

@@ -1,0 +1,91 @@
+//! Material tables: what each spelling becomes, and what is refused.
+
+use std::path::Path;
+
+use super::*;
+
+fn read_text(text: &str) -> Result<Material, String> {
+    Material::from_toml_str(text, Path::new("dir/brass.toml")).map_err(|error| error.to_string())
+}
+
+fn refused(text: &str) -> String {
+    read_text(text).expect_err("this should have been refused")
+}
+
+#[test]
+fn an_empty_material_is_a_light_grey_diffuser_named_after_its_file() {
+    let material = read_text("").unwrap();
+    assert_eq!(material.name, "brass");
+    assert!(material.two_sided);
+    let base_color = Color::Constant(Rgb::splat(0.8));
+    assert_eq!(material.lobes, [LobeSpec { weight: 1.0, model: Model::Diffuse { base_color } }]);
+}
+
+#[test]
+fn a_conductor_takes_any_one_spelling_of_its_width() {
+    let widths = |text: &str| {
+        let material = read_text(&format!("type = \"conductor\"\nf0 = [0.9, 0.6, 0.3]\n{text}")).unwrap();
+        match material.lobes[0].model {
+            Model::Conductor { alpha_x, alpha_y, .. } => (alpha_x, alpha_y),
+            ref other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(widths("roughness = 0.5"), (0.25, 0.25));
+    assert_eq!(widths("alpha = 0.5"), (0.5, 0.5));
+    assert_eq!(widths("alpha_x = 1\nalpha_y = 1e-4"), (1.0, 1e-4));
+    assert_eq!(widths(""), (0.09, 0.09));
+}
+
+#[test]
+fn a_mix_adds_its_lobes() {
+    let text = "type = \"mix\"\nemission = 2\ntwo_sided = false\nlobes = [\n  { type = \"diffuse\", base_color = 0.5 },\n  \
+                { type = \"mirror\", weight = 0.5 },\n]\n";
+    let material = read_text(text).unwrap();
+    assert_eq!(material.lobes.len(), 2);
+    assert_eq!((material.lobes[1].weight, material.emission.g, material.two_sided), (0.5, 2.0, false));
+}
+
+#[test]
+fn a_mix_that_creates_light_is_refused() {
+    let text = "type = \"mix\"\nlobes = [{ base_color = 0.8 }, { type = \"mirror\", weight = 0.5 }]\n";
+    let message = refused(text);
+    assert!(message.ends_with("the material reflects 1.3 of the light; the sum over its lobes is at most 1"), "{message}");
+}
+
+#[test]
+fn the_coefficients_of_gold_are_within_the_law() {
+    let gold = "type = \"conductor\"\neta = [0.143, 0.375, 1.442]\nk = [3.983, 2.386, 1.603]\nroughness = 0.2\n";
+    assert!(read_text(gold).is_ok());
+}
+
+#[test]
+fn refusals_name_the_line_and_what_would_be_right() {
+    let cases = [
+        ("type = \"conductor\"\nf0 = 1\neta = 1\nk = 1", "dir/brass.toml:1: a conductor needs either \"f0\" or both \"eta\" and \"k\""),
+        ("type = \"conductor\"\neta = 1", "dir/brass.toml:1: a conductor needs either \"f0\" or both \"eta\" and \"k\""),
+        (
+            "type = \"conductor\"\nf0 = 1\nalpha = 0.1\nroughness = 0.1",
+            "dir/brass.toml:1: give one of \"roughness\", \"alpha\", or \"alpha_x\" with \"alpha_y\"",
+        ),
+        ("type = \"conductor\"\nf0 = 1\nalpha = 1e-5", "dir/brass.toml:3: \"alpha\" gives an alpha below 0.0001: use type = \"mirror\""),
+        ("type = \"conductor\"\nf0 = 1\nalpha = 1.1", "dir/brass.toml:3: \"alpha\" must be a number from 0 to 1, not 1.1"),
+        ("emission = [1, 1]", "dir/brass.toml:1: \"emission\" must be 3 numbers, not an array of 2"),
+        ("\nemission = 2e6", "dir/brass.toml:2: \"emission\" must be a number from 0 to 1000000, not 2e6"),
+        ("two_sided = 1", "dir/brass.toml:1: \"two_sided\" must be true or false, not 1"),
+        ("type = \"mix\"", "dir/brass.toml:1: a mix needs \"lobes\", an array of tables"),
+        ("type = \"mix\"\nlobes = []", "dir/brass.toml:2: a mix has 1 to 4 lobes, not 0"),
+        (
+            "type = \"mix\"\nlobes = [\n{ type = \"mix\" }]",
+            "dir/brass.toml:3: type \"mix\" is not possible here; known are \"diffuse\", \"mirror\", \"conductor\", \"mix\"",
+        ),
+        (
+            "type = \"mix\"\nlobes = [\n{ type = \"mirror\",\n alpha = 1 }]",
+            "dir/brass.toml:4: unknown key \"alpha\" in lobe 1 of the material; known are \"type\", \"weight\", \"reflectance\"",
+        ),
+        ("base_color = { texture = \"a.png\" }", "dir/brass.toml:1: an image is only possible in a scene file"),
+        ("base_color = { scale = 1 }", "dir/brass.toml:1: a colour table needs \"texture\""),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(refused(text), expected);
+    }
+}

@@ -1,0 +1,304 @@
+//! The shading stage: eight paths at a time receive emitted light, ask a light, and scatter.
+//!
+//! Multiple importance sampling: light that can be reached both by scattering and by asking the light is weighted by the
+//! power heuristic on both sides; after the camera or a discrete event only scattering can reach it, with weight 1.
+//! Per vertex the order of additions is: emission, then the answer of the shadow ray.
+
+use crate::light::power_heuristic;
+use crate::material::lane_surface;
+use crate::plan::Plan;
+use crate::point::{ShadingPoints, SurfacePoint};
+use crate::queue::{Batch, Paths, Queue, ShadowQueue};
+use crate::sampler::{Purpose, Random4, Sampler};
+use crate::world::{World, splat_rgb};
+use gonio_accel::{Hit8, Ray8};
+use gonio_kernel::warp::{pdf_cosine_hemisphere, sample_cosine_hemisphere, sample_uniform_triangle};
+use gonio_kernel::{Closure, F32x8, Mask, Mask8, Real, Rgb, U32x8, Vec3};
+
+/// Shadow rays stop this much short of the light, relative to its distance: the rounding of the distance and of t.
+const SHORT_OF_LIGHT: f32 = 1.0 - 16.0 / 16_777_216.0;
+/// Russian roulette starts with this scattering event.
+const ROULETTE_FROM: u32 = 5;
+/// No path goes on with a higher probability than this once roulette has started.
+const ROULETTE_CAP: f64 = 0.95;
+
+/// Everything a shading call reads.
+#[derive(Clone, Copy)]
+pub(crate) struct Context<'a> {
+    pub(crate) world: &'a World,
+    pub(crate) plan: Plan,
+    pub(crate) sampler: Sampler,
+    pub(crate) max_depth: u32,
+    pub(crate) russian_roulette: bool,
+}
+
+/// Where paths of a tile lie in the picture, and what they have gathered.
+pub(crate) struct Tile<'a> {
+    /// x + 65536·y of each path's pixel.
+    pub(crate) pixel: &'a [u32],
+    /// Sample number of each path.
+    pub(crate) sample: &'a [u32],
+    /// Gathered radiance of each path.
+    pub(crate) radiance: &'a mut [[f32; 3]],
+}
+
+impl Tile<'_> {
+    /// Adds light to those lanes' paths.
+    #[inline(always)]
+    pub(crate) fn gather(&mut self, path: [u32; F32x8::LANES], mask: Mask8, light: Rgb<F32x8>) {
+        let (bits, [r, g, b]) = (mask.to_bits(), [light.r, light.g, light.b].map(F32x8::to_array));
+        for lane in 0..F32x8::LANES {
+            if bits >> lane & 1 != 0 {
+                let sum = &mut self.radiance[path[lane] as usize];
+                *sum = [sum[0] + r[lane], sum[1] + g[lane], sum[2] + b[lane]];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn random(&self, ctx: &Context, path: [u32; F32x8::LANES], bounce: u32, purpose: Purpose) -> Random4 {
+        let pixel = U32x8::new(path.map(|p| self.pixel[p as usize]));
+        let sample = U32x8::new(path.map(|p| self.sample[p as usize]));
+        ctx.sampler.draw(pixel, sample, bounce, purpose)
+    }
+}
+
+/// What eight paths bring to their hits.
+struct Incoming {
+    dir: Vec3<F32x8>,
+    throughput: Rgb<F32x8>,
+    pdf: F32x8,
+    path: [u32; F32x8::LANES],
+}
+
+impl Incoming {
+    #[inline(always)]
+    fn new(batch: &Batch, queue: &Queue) -> Self {
+        let (rays, paths) = (&queue.rays, &queue.paths);
+        Self {
+            dir: Vec3::new(
+                batch.gather(rays, |r| &r.dir.x),
+                batch.gather(rays, |r| &r.dir.y),
+                batch.gather(rays, |r| &r.dir.z),
+            ),
+            throughput: Rgb::new(
+                batch.gather(paths, |p| &p.throughput.r),
+                batch.gather(paths, |p| &p.throughput.g),
+                batch.gather(paths, |p| &p.throughput.b),
+            ),
+            pdf: batch.gather(paths, |p| &p.pdf),
+            path: batch.gather_int(paths, |p| &p.path),
+        }
+    }
+
+    /// The weight of light found by scattering, which a light sample would have found with density `pdf_light`.
+    #[inline(always)]
+    fn weight(&self, pdf_light: F32x8) -> F32x8 {
+        F32x8::select(self.pdf.gt(F32x8::ZERO), power_heuristic(self.pdf, pdf_light), F32x8::ONE)
+    }
+}
+
+/// Paths that left the world receive the environment.
+#[inline(always)]
+pub(crate) fn miss(ctx: &Context, batch: &Batch, queue: &Queue, tile: &mut Tile) {
+    let incoming = Incoming::new(batch, queue);
+    let weight = incoming.weight(batch.gather(&queue.paths, |p| &p.pdf_environment));
+    let radiance = splat_rgb(ctx.world.lights.environment());
+    tile.gather(incoming.path, batch.live, incoming.throughput * radiance * weight);
+}
+
+/// Paths that met materials of one variant: emission, light sample, scattering. `depth` counts the scattering events
+/// so far. Returns how many lanes a closure was evaluated for.
+#[inline(always)]
+pub(crate) fn hit(
+    ctx: &Context,
+    depth: u32,
+    batch: &Batch,
+    (queue, hits): (&Queue, &[Hit8]),
+    tile: &mut Tile,
+    shadow: &mut ShadowQueue,
+    next: &mut Queue,
+) -> u32 {
+    let incoming = Incoming::new(batch, queue);
+    let wo = -incoming.dir;
+    let points = ShadingPoints::new(ctx.world, ctx.plan, batch, hits, wo);
+    if ctx.plan.area_lights {
+        receive_emission(ctx, batch, &incoming, &points, tile);
+    }
+    if depth >= ctx.max_depth {
+        return 0;
+    }
+
+    let mut live = batch.live;
+    if ctx.plan.one_sided {
+        let two_sided = points.material.iter().enumerate().fold(0, |bits, (lane, &m)| {
+            bits | u32::from(ctx.world.materials[m as usize].two_sided) << lane
+        });
+        live = live & (points.front | Mask8::from_bits(two_sided));
+    }
+    if !live.any() {
+        return 0;
+    }
+
+    let materials = points.material.map(|m| &ctx.world.materials[m as usize]);
+    let alike = points.material.iter().all(|&m| m == points.material[0]);
+    let looked_up;
+    let surface = match &materials[0].surface {
+        Some(surface) if alike => surface,
+        _ => {
+            looked_up = lane_surface(materials.map(|m| &m.spec), &ctx.world.textures, points.uv);
+            &looked_up
+        }
+    };
+    let closure = Closure::new(surface, points.frame.to_local(wo));
+    let origin = points.point.off_plane(points.normal);
+
+    let lights = &ctx.world.lights;
+    if ctx.plan.area_lights || ctx.plan.environment {
+        let u = tile.random(ctx, incoming.path, depth, Purpose::Light);
+        let toss = u.unit(0);
+        let p_environment = F32x8::splat(lights.environment_probability());
+        let ask_environment = toss.lt(p_environment);
+        // The toss within the chosen strategy decides the emitter's alias; below 1 even after rounding.
+        let rest = ((toss - p_environment) / (F32x8::ONE - p_environment)).min(F32x8::splat(0.999_999_94));
+        for (kind, mask) in [(true, live & ask_environment), (false, live & !ask_environment)] {
+            let wanted = if kind { ctx.plan.environment } else { ctx.plan.area_lights };
+            if !wanted || !mask.any() {
+                continue;
+            }
+            let place = [u.unit(2), u.unit(3)];
+            let asked = if kind {
+                ask_sky(ctx, &points, place, p_environment)
+            } else {
+                ask_emitter(ctx, &points, origin, u.0[1], rest, place)
+            };
+            let value = closure.eval(points.frame.to_local(asked.wi));
+            let weight = power_heuristic(asked.pdf, value.pdf) / asked.pdf;
+            let arriving = incoming.throughput * value.f_cos * asked.radiance * weight;
+            let above = points.normal.dot(asked.wi).gt(F32x8::ZERO);
+            let mask = mask & asked.mask & above & arriving.largest().gt(F32x8::ZERO);
+            if mask.any() {
+                shadow.rays.push(Ray8 { t_max: asked.t_max, mask, ..Ray8::new(origin, asked.wi) });
+                shadow.arriving.push(arriving);
+                shadow.path.push(U32x8::new(incoming.path));
+            }
+        }
+    }
+    scatter(ctx, depth, live, &incoming, &points, &closure, origin, tile, next);
+    live.to_bits().count_ones()
+}
+
+/// Light that a hit triangle emits towards the path, from the front of its winding.
+#[inline(always)]
+fn receive_emission(ctx: &Context, batch: &Batch, incoming: &Incoming, points: &ShadingPoints, tile: &mut Tile) {
+    let materials = points.material.map(|m| &ctx.world.materials[m as usize]);
+    if !materials.iter().any(|m| m.emits()) {
+        return;
+    }
+    let rgb = materials.map(|m| m.emission);
+    let emission =
+        Rgb::new(F32x8::new(rgb.map(|c| c.r)), F32x8::new(rgb.map(|c| c.g)), F32x8::new(rgb.map(|c| c.b)));
+    let pdf_area = emission.luminance() * F32x8::splat(ctx.world.lights.pdf_area_per_luminance());
+    let pdf_light = pdf_area * points.t * points.t / points.cos_geometric;
+    let mask = batch.live & points.front & emission.largest().gt(F32x8::ZERO);
+    tile.gather(incoming.path, mask, incoming.throughput * emission * incoming.weight(pdf_light));
+}
+
+/// A direction in which light is asked for.
+struct Asked {
+    wi: Vec3<F32x8>,
+    pdf: F32x8,
+    radiance: Rgb<F32x8>,
+    t_max: F32x8,
+    mask: Mask8,
+}
+
+/// A cosine-distributed direction of the environment.
+#[inline(always)]
+fn ask_sky(ctx: &Context, points: &ShadingPoints, place: [F32x8; 2], probability: F32x8) -> Asked {
+    let local = sample_cosine_hemisphere(place);
+    Asked {
+        wi: points.frame.to_world(local),
+        pdf: pdf_cosine_hemisphere(local) * probability,
+        radiance: splat_rgb(ctx.world.lights.environment()),
+        t_max: F32x8::splat(f32::INFINITY),
+        mask: Mask8::splat(true),
+    }
+}
+
+/// A uniform point of an emitting triangle chosen by power.
+#[inline(always)]
+fn ask_emitter(
+    ctx: &Context,
+    points: &ShadingPoints,
+    origin: Vec3<F32x8>,
+    slot: U32x8,
+    toss: F32x8,
+    place: [F32x8; 2],
+) -> Asked {
+    let emitters = ctx.world.lights.pick(slot, toss);
+    let [c0, c1, c2] = emitters.corners;
+    let normal = (c1 - c0).cross(c2 - c0).normalize_or(points.normal);
+    let target = SurfacePoint::new(&emitters.corners, sample_uniform_triangle(place)).off_plane(normal);
+    let to = target - origin;
+    let distance2 = to.length2();
+    let distance = distance2.sqrt();
+    let wi = to * distance.recip();
+    let cos = -normal.dot(wi);
+    let pdf_area = emitters.radiance.luminance() * F32x8::splat(ctx.world.lights.pdf_area_per_luminance());
+    Asked {
+        wi,
+        pdf: pdf_area * distance2 / cos,
+        radiance: emitters.radiance,
+        t_max: distance * F32x8::splat(SHORT_OF_LIGHT),
+        mask: cos.gt(F32x8::ZERO) & distance.gt(F32x8::ZERO),
+    }
+}
+
+/// Chooses how the paths go on, and writes the rays of the next bounce.
+#[inline(always)]
+fn scatter(
+    ctx: &Context,
+    depth: u32,
+    live: Mask8,
+    incoming: &Incoming,
+    points: &ShadingPoints,
+    closure: &Closure<F32x8>,
+    origin: Vec3<F32x8>,
+    tile: &Tile,
+    next: &mut Queue,
+) {
+    let u = tile.random(ctx, incoming.path, depth, Purpose::Scatter);
+    let sample = closure.sample([u.unit(0), u.unit(1), u.unit(2)]);
+    let mut value = closure.eval(sample.wi);
+    let mut continuous = live;
+    if ctx.plan.discrete && (sample.event.discrete & live).any() {
+        let discrete = closure.discrete(&sample.event);
+        value.f_cos = Rgb::select(sample.event.discrete, discrete.f_cos, value.f_cos);
+        value.pdf = F32x8::select(sample.event.discrete, discrete.pdf, value.pdf);
+        continuous = live & !sample.event.discrete;
+    }
+    let wi = points.frame.to_world(sample.wi);
+    // Reflection is decided by the geometric side: a direction into the surface carries nothing.
+    let above = points.normal.dot(wi).gt(F32x8::ZERO);
+    let mut alive = live & !sample.event.failed & above & value.pdf.gt(F32x8::ZERO);
+    let mut throughput = incoming.throughput * value.f_cos * value.pdf.recip();
+    alive = alive & throughput.largest().gt(F32x8::ZERO);
+    if ctx.russian_roulette && depth + 1 >= ROULETTE_FROM {
+        let q = throughput.luminance().min(F32x8::lit(ROULETTE_CAP));
+        alive = alive & u.unit(3).lt(q);
+        throughput = throughput * q.recip();
+    }
+    if alive.any() {
+        let pdf_environment = if ctx.plan.environment {
+            let p = F32x8::splat(ctx.world.lights.environment_probability());
+            pdf_cosine_hemisphere(sample.wi) * p
+        } else {
+            F32x8::ZERO
+        };
+        next.push(
+            Ray8 { mask: alive, ..Ray8::new(origin, wi) },
+            Paths { throughput, pdf: value.pdf.or_zero(continuous), pdf_environment, path: U32x8::new(incoming.path) },
+        );
+    }
+}

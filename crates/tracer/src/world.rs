@@ -1,0 +1,220 @@
+//! The world: a scene made ready to be traced.
+//!
+//! Everything is placed, recentred and rounded once. The middle of the scene becomes the origin while positions are still
+//! `f64`, so a scene far from its own origin (georeferenced data) keeps its precision. Each instance's triangles are laid
+//! out in the world; triangles of a mirrored instance swap two corners, so that the front stays the front.
+
+use crate::light::{Emitter, Lights};
+use crate::material::PreparedMaterial;
+use crate::plan::Plan;
+use crate::scene::{Camera, FilmSettings, Instance, Mesh, Scene, SceneError};
+use crate::texture::Texture;
+use glam::{DMat3, DVec3};
+use gonio_accel::Geometry;
+use gonio_kernel::{F32x8, Rgb, Vec3};
+use std::path::Path;
+
+/// A scene made ready: geometry, shading data, lights, camera and plan.
+#[derive(Clone, Debug)]
+pub struct World {
+    pub(crate) film: FilmSettings,
+    pub(crate) view: View,
+    geometry: Geometry,
+    /// Where each instance's triangles start in the three lists below.
+    offsets: Vec<u32>,
+    pub(crate) triangles: Vec<Triangle>,
+    /// One entry per triangle if the plan has smooth normals, else empty; a zero normal means the geometric one.
+    pub(crate) normals: Vec<[Vec3<f32>; 3]>,
+    /// One entry per triangle if the plan has textures or tangents, else empty.
+    pub(crate) uvs: Vec<[[f32; 2]; 3]>,
+    pub(crate) materials: Vec<PreparedMaterial>,
+    pub(crate) textures: Vec<Texture>,
+    pub(crate) lights: Lights,
+    plan: Plan,
+    warnings: Vec<String>,
+}
+
+/// What shading needs of every triangle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Triangle {
+    pub(crate) corners: [Vec3<f32>; 3],
+    /// Index into [`World::materials`].
+    pub(crate) material: u32,
+}
+
+/// The camera, ready to make rays: origin and the vectors to the middle and to the edges of a picture one unit away.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    pub(crate) origin: Vec3<f32>,
+    pub(crate) forward: Vec3<f32>,
+    pub(crate) right: Vec3<f32>,
+    pub(crate) up: Vec3<f32>,
+}
+
+impl World {
+    /// Places the scene. O(triangles).
+    ///
+    /// # Errors
+    /// If the scene cannot be cast at: too many triangles, or positions that overflow `f32`.
+    pub fn new(scene: &Scene) -> Result<Self, SceneError> {
+        let refuse = |message: String| SceneError::file(Path::new("scene"), message);
+        let center = center(scene);
+        let mut warnings = Vec::new();
+        let (materials, order) = PreparedMaterial::prepare(scene);
+        let mut plan = Plan {
+            area_lights: false,
+            environment: scene.environment.largest() > 0.0,
+            textures: materials.iter().any(|m| m.textured),
+            smooth_normals: scene.meshes.iter().any(|m| m.normals.is_some()),
+            tangents: false,
+            one_sided: materials.iter().any(|m| !m.two_sided),
+            discrete: materials.iter().any(|m| m.discrete),
+        };
+        for mesh in &scene.meshes {
+            let anisotropic = mesh.materials.iter().any(|&m| materials[order[m as usize] as usize].anisotropic);
+            plan.tangents |= anisotropic && mesh.uvs.is_some();
+            if anisotropic && mesh.uvs.is_none() {
+                warnings.push(format!(
+                    "mesh \"{}\" has an anisotropic material but no texture coordinates: its tangents are arbitrary",
+                    mesh.name
+                ));
+            }
+        }
+
+        let mut world = Self {
+            film: scene.film,
+            view: View::new(&scene.camera, &scene.film, center),
+            geometry: Geometry::new(Vec::new(), Vec::new()).map_err(|e| refuse(e.to_string()))?,
+            offsets: Vec::new(),
+            triangles: Vec::new(),
+            normals: Vec::new(),
+            uvs: Vec::new(),
+            materials,
+            textures: scene.textures.clone(),
+            lights: Lights::default(),
+            plan,
+            warnings,
+        };
+        let mut meshes = Vec::new();
+        for instance in &scene.instances {
+            world.offsets.push(world.triangles.len() as u32);
+            meshes.push(world.place(instance, &scene.meshes[instance.mesh], center, &order));
+        }
+        let instances = (0..meshes.len() as u32)
+            .map(|mesh| gonio_accel::Instance { mesh, transform: gonio_accel::Instance::IDENTITY })
+            .collect();
+        world.geometry = Geometry::new(meshes, instances).map_err(|e| refuse(e.to_string()))?;
+
+        let emitters = world.triangles.iter().filter_map(|t| {
+            let radiance = world.materials[t.material as usize].emission;
+            (radiance.luminance() > 0.0).then_some(Emitter { corners: t.corners, radiance })
+        });
+        world.lights = Lights::new(emitters.collect(), scene.environment);
+        world.plan.area_lights = world.triangles.iter().any(|t| world.materials[t.material as usize].emits());
+        Ok(world)
+    }
+
+    /// What was noticed while placing the scene: one sentence each.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// What rays are cast at.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// Which effects the scene needs.
+    pub fn plan(&self) -> Plan {
+        self.plan
+    }
+
+    /// The place of a hit in the lists of triangles.
+    #[inline(always)]
+    pub(crate) fn triangle_index(&self, instance: u32, prim: u32) -> usize {
+        (self.offsets[instance as usize] + prim) as usize
+    }
+
+    /// Appends an instance's triangles and returns them as a mesh for casting.
+    fn place(&mut self, instance: &Instance, mesh: &Mesh, center: DVec3, order: &[u32]) -> gonio_accel::Mesh {
+        let to_world = instance.transform;
+        let positions: Vec<[f32; 3]> = mesh
+            .positions
+            .iter()
+            .map(|&p| (to_world.transform_point3(p.into()) - center).as_vec3().to_array())
+            .collect();
+        let mirrored = to_world.matrix3.determinant() < 0.0;
+        let normal_matrix = DMat3::from(to_world.matrix3).inverse().transpose();
+        let front = |t: &[u32; 3]| if mirrored { [t[0], t[2], t[1]] } else { *t };
+        let triangles: Vec<[u32; 3]> = mesh.triangles.iter().map(front).collect();
+
+        let corners = triangles.iter().map(|t| t.map(|v| Vec3::from(positions[v as usize])));
+        self.triangles.extend(
+            corners
+                .zip(&mesh.materials)
+                .map(|(corners, &m)| Triangle { corners, material: order[m as usize] }),
+        );
+        if self.plan.smooth_normals {
+            let none = Vec3::new(0.0, 0.0, 0.0);
+            let turned: Vec<Vec3<f32>> = mesh.normals.iter().flatten().map(|&n| turn(normal_matrix, n)).collect();
+            self.normals.extend(triangles.iter().map(|t| t.map(|v| turned.get(v as usize).copied().unwrap_or(none))));
+        }
+        if self.plan.textures || self.plan.tangents {
+            let uv = |v: u32| mesh.uvs.as_ref().map_or([0.0; 2], |uvs| uvs[v as usize]);
+            self.uvs.extend(triangles.iter().map(|t| t.map(uv)));
+        }
+        gonio_accel::Mesh { positions, triangles }
+    }
+}
+
+fn turn(normal_matrix: DMat3, n: [f32; 3]) -> Vec3<f32> {
+    (normal_matrix * glam::Vec3::from(n).as_dvec3()).normalize_or_zero().as_vec3().to_array().into()
+}
+
+/// The middle of everything that is placed.
+fn center(scene: &Scene) -> DVec3 {
+    let placed = scene.instances.iter().flat_map(|i| {
+        scene.meshes[i.mesh].positions.iter().map(move |&p| i.transform.transform_point3(p.into()))
+    });
+    let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for p in placed {
+        lo = lo.min(p);
+        hi = hi.max(p);
+    }
+    if lo.is_finite() && hi.is_finite() { lo * 0.5 + hi * 0.5 } else { DVec3::ZERO }
+}
+
+impl View {
+    fn new(camera: &Camera, film: &FilmSettings, center: DVec3) -> Self {
+        let forward = (camera.target - camera.origin).normalize();
+        let right = forward.cross(camera.up).normalize();
+        let up = right.cross(forward);
+        let tan = (camera.vfov.to_radians() * 0.5).tan();
+        let aspect = f64::from(film.width) / f64::from(film.height);
+        let narrow = |v: DVec3| v.as_vec3().to_array().into();
+        Self {
+            origin: narrow(camera.origin - center),
+            forward: narrow(forward),
+            right: narrow(right * tan * aspect),
+            up: narrow(up * tan),
+        }
+    }
+
+    /// Unit directions through places (x, y) of the picture, both in [−1, 1], y up.
+    #[inline(always)]
+    pub(crate) fn directions(&self, x: F32x8, y: F32x8) -> Vec3<F32x8> {
+        splat(self.forward).along(x, splat(self.right)).along(y, splat(self.up)).normalize()
+    }
+}
+
+/// The same vector in every lane.
+#[inline(always)]
+pub(crate) fn splat(v: Vec3<f32>) -> Vec3<F32x8> {
+    Vec3::new(F32x8::splat(v.x), F32x8::splat(v.y), F32x8::splat(v.z))
+}
+
+/// The same colour in every lane.
+#[inline(always)]
+pub(crate) fn splat_rgb(c: Rgb<f32>) -> Rgb<F32x8> {
+    c.map(F32x8::splat)
+}

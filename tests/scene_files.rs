@@ -1,0 +1,410 @@
+//! Scene files, good and bad: what loads, what it becomes, and the very words of each refusal.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, Instant};
+
+use gonio_tracer::image::{Metadata, Picture, write_exr, write_png};
+use gonio_tracer::scene::{Color, Model, Scene};
+
+/// A folder of its own for one test, removed at its end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Self {
+        static COUNTER: AtomicU32 = AtomicU32::new(0);
+        let number = COUNTER.fetch_add(1, Ordering::Relaxed);
+        let path = std::env::temp_dir().join(format!("gonio-scene-files-{}-{number}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn write(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(&path, content).unwrap();
+        path
+    }
+
+    /// The refusal of a file, without the folder's name.
+    fn refusal(&self, path: &Path) -> String {
+        let error = Scene::load(path).expect_err("this should have been refused");
+        self.strip(&error.to_string())
+    }
+
+    fn strip(&self, text: &str) -> String {
+        text.replace(&format!("{}/", self.0.display()), "")
+    }
+
+    fn warnings(&self, scene: &Scene) -> Vec<String> {
+        scene.warnings.iter().map(|warning| self.strip(warning)).collect()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+fn refused_obj(text: &str) -> String {
+    let folder = Folder::new();
+    let path = folder.write("bad.obj", text);
+    folder.refusal(&path)
+}
+
+fn refused_scene(text: &str) -> String {
+    let folder = Folder::new();
+    folder.write("tri.obj", TRIANGLE);
+    let path = folder.write("scene.toml", text);
+    folder.refusal(&path)
+}
+
+#[test]
+fn every_torture_file_loads_or_says_why_in_under_a_second() {
+    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
+    let root = std::env::var_os("GONIO_DATA").map_or(default, PathBuf::from).join("obj_torture");
+    let Ok(families) = fs::read_dir(&root) else {
+        // A checkout without the data is a complete checkout.
+        println!("obj_torture: not there ({}), not run", root.display());
+        return;
+    };
+    let (mut loaded, mut refused) = (0, 0);
+    for family in families {
+        for file in fs::read_dir(family.unwrap().path()).unwrap() {
+            let path = file.unwrap().path();
+            if path.extension().is_none_or(|extension| extension != "obj") {
+                continue;
+            }
+            let start = Instant::now();
+            let result = Scene::load(&path);
+            assert!(start.elapsed() < Duration::from_secs(1), "{}: {:?}", path.display(), start.elapsed());
+            match result {
+                Ok(scene) => {
+                    loaded += 1;
+                    assert!(scene.meshes.iter().all(|mesh| !mesh.triangles.is_empty()));
+                }
+                Err(error) => {
+                    refused += 1;
+                    println!("{error}");
+                    assert!(error.line.is_some() && error.to_string().contains(".obj:"), "no line in: {error}");
+                }
+            }
+        }
+    }
+    println!("obj_torture: {loaded} loaded, {refused} refused");
+    assert!(loaded + refused > 0);
+}
+
+#[test]
+fn an_obj_alone_gets_a_camera_and_a_white_sky() {
+    let folder = Folder::new();
+    let scene = Scene::load(&folder.write("tri.obj", TRIANGLE)).unwrap();
+    assert_eq!(scene.meshes[0].triangles, [[0, 1, 2]]);
+    assert_eq!(scene.environment.r, 1.0);
+    assert!(scene.camera.origin.z > 0.0 && scene.camera.origin.y > 0.0);
+    assert_eq!(folder.warnings(&scene), ["tri.obj: faces without a material are drawn in grey"]);
+}
+
+#[test]
+fn missing_files_are_named() {
+    let folder = Folder::new();
+    let text = folder.refusal(&folder.0.join("absent.obj"));
+    assert!(text.starts_with("absent.obj: cannot be read: "), "{text}");
+    assert_eq!(
+        refused_scene("[film]\nspp = 4\n[[meshes]]\nfile = \"absent.obj\"\n"),
+        "scene.toml:4: the file \"absent.obj\" does not exist"
+    );
+    assert_eq!(
+        refused_scene("[materials.a]\nbase_color = { texture = \"absent.png\" }\n[[meshes]]\nfile = \"tri.obj\"\n"),
+        "scene.toml:2: the image \"absent.png\" does not exist"
+    );
+    assert_eq!(folder.refusal(&folder.write("a.gltf", "")), "a.gltf: is neither a scene file (.toml) nor an OBJ file (.obj)");
+}
+
+#[test]
+fn unknown_keys_and_bad_syntax_are_named_with_their_line() {
+    assert_eq!(
+        refused_scene("[film]\nwidth = 4\nheigth = 4\n[[meshes]]\nfile = \"tri.obj\"\n"),
+        "scene.toml:3: unknown key \"heigth\" in [film]; known are \"width\", \"height\", \"spp\", \"exposure\""
+    );
+    assert_eq!(
+        refused_scene("[materials.a]\ntype = \"diffuse\"\nroughness = 0.5\n[[meshes]]\nfile = \"tri.obj\"\n"),
+        "scene.toml:3: unknown key \"roughness\" in material \"a\"; known are \"emission\", \"two_sided\", \"type\", \
+         \"weight\", \"base_color\""
+    );
+    let text = refused_scene("[film]\nwidth = = 4\n");
+    assert!(text.starts_with("scene.toml:2: "), "{text}");
+    assert_eq!(refused_scene("\n"), "scene.toml:1: the scene has no [[meshes]]: there is nothing to render");
+}
+
+#[test]
+fn undefined_materials_are_named_with_those_defined() {
+    let materials = "[materials.white]\nbase_color = 0.7\n[materials.red]\nbase_color = [0.6, 0.1, 0.1]\n";
+    assert_eq!(
+        refused_scene(&format!("{materials}[[meshes]]\nfile = \"tri.obj\"\nmaterial = \"brass\"\n")),
+        "scene.toml:7: material \"brass\" is not defined; defined are \"white\", \"red\""
+    );
+    assert_eq!(
+        refused_scene(&format!("{materials}[[meshes]]\nfile = \"tri.obj\"\nmaterials = {{ hull = \"red\" }}\n")),
+        "scene.toml:7: \"tri.obj\" has no material \"hull\"; it has none"
+    );
+}
+
+#[test]
+fn values_out_of_range_are_refused_with_their_line() {
+    let mesh = "\n[[meshes]]\nfile = \"tri.obj\"\n";
+    let cases = [
+        ("[film]\nwidth = 0", "scene.toml:2: \"width\" must be a whole number from 1 to 65536, not 0"),
+        ("[film]\nspp = 1048577", "scene.toml:2: \"spp\" must be a whole number from 1 to 1048576, not 1048577"),
+        ("[film]\nexposure = nan", "scene.toml:2: \"exposure\" must be a number from -100 to 100, not nan"),
+        ("[camera]\nvfov = 180", "scene.toml:2: \"vfov\" must be a number from 0.01 to 179, not 180"),
+        ("[camera]\norigin = [0, inf, 0]", "scene.toml:2: \"origin\" must be a number from -1000000000000 to 1000000000000, not inf"),
+        ("[camera]\norigin = [0, 1]", "scene.toml:2: \"origin\" must be 3 numbers, not an array of 2"),
+        ("[integrator]\nseed = -1", "scene.toml:2: \"seed\" must be a whole number from 0 to 18446744073709551615, not -1"),
+        ("[environment]\nradiance = -1.0", "scene.toml:2: \"radiance\" must be a number from 0 to 1000000, not -1.0"),
+        ("[materials.a]\nbase_color = [0, 1.5, 0]", "scene.toml:2: \"base_color\" must be a number from 0 to 1, not 1.5"),
+        ("[materials.a]\ntype = \"glass\"", "scene.toml:2: type \"glass\" is not possible here; known are \"diffuse\", \"mirror\", \"conductor\", \"mix\""),
+        ("[materials.a]\ntype = \"conductor\"\nf0 = 0.9\nroughness = 0.001", "scene.toml:4: \"roughness\" gives an alpha below 0.0001: use type = \"mirror\""),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(refused_scene(&format!("{text}{mesh}")), expected);
+    }
+    assert_eq!(
+        refused_scene("[camera]\norigin = [1, 1, 1]\ntarget = [1, 1, 1]\n[[meshes]]\nfile = \"tri.obj\""),
+        "scene.toml:1: \"origin\" and \"target\" of the camera are the same point"
+    );
+    for (transform, expected) in [
+        ("{ scale = 0 }", "a scale of 0 squeezes space flat"),
+        ("{ rotate = { axis = [0, 0, 0], degrees = 1 } }", "\"axis\" has no length"),
+        ("{ shear = 1 }", "unknown key \"shear\" in a step of the transform; known are \"scale\", \"rotate\", \"translate\", \"matrix\""),
+        ("{ matrix = [1,0,0,0, 1,0,0,0, 0,0,1,0, 0,0,0,1] }", "the transform cannot be inverted: it is not finite or squeezes space flat"),
+        ("{ scale = 1e10 }", "the scene is 1e10 m wide; it must be 1e-6 to 1e9"),
+    ] {
+        let text = refused_scene(&format!("[[meshes]]\nfile = \"tri.obj\"\ntransform = [{transform}]\n"));
+        assert!(text.starts_with("scene.toml:") && text.ends_with(expected), "{text}");
+    }
+}
+
+#[test]
+fn numbers_that_are_not_finite_are_refused_with_their_line() {
+    let rest = "v 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    assert_eq!(refused_obj(&format!("v 0 nan 0\n{rest}")), "bad.obj:1: \"nan\" in a vertex is not finite");
+    assert_eq!(refused_obj(&format!("v 0 0 -inf\n{rest}")), "bad.obj:1: \"-inf\" in a vertex is not finite");
+    assert_eq!(refused_obj(&format!("v 0 0 1e999\n{rest}")), "bad.obj:1: \"1e999\" in a vertex is not finite");
+    assert_eq!(refused_obj(&format!("\nv 0 0 1e40\n{rest}")), "bad.obj:2: \"1e40\" in a vertex is beyond the largest allowed, 1e12");
+    assert_eq!(refused_obj(&format!("v 0 0,5 0\n{rest}")), "bad.obj:1: \"0,5\" in a vertex is not a number");
+    assert_eq!(refused_obj(&format!("v 0 0 0 0\n{rest}")), "bad.obj:1: the vertex divided by its weight 0 is not finite");
+    assert_eq!(refused_obj("v 0 0\n"), "bad.obj:1: a vertex has 3 coordinates, then optionally a weight or a colour; here are 2 numbers");
+    assert_eq!(refused_obj(&format!("vn 0 nan 0\nv 0 0 0\n{rest}")), "bad.obj:1: \"nan\" in a normal is not finite");
+    assert_eq!(refused_obj(&format!("vt nan 0\nv 0 0 0\n{rest}")), "bad.obj:1: \"nan\" in a texture coordinate is not finite");
+}
+
+#[test]
+fn indices_out_of_range_are_refused_with_their_line() {
+    let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n";
+    let cases = [
+        ("f 1 2 4", "vertex index 4 in a face is out of range: the file defines 3"),
+        ("f 0 1 2", "vertex index 0 in a face: indices start at 1"),
+        ("f -4 -2 -1", "vertex index -4 in a face is out of range: 3 are defined above it"),
+        ("f 1/2 2/2 3/2", "texture coordinate index 2 in a face is out of range: the file defines 1"),
+        ("f 1//9 2//9 3//9", "normal index 9 in a face is out of range: the file defines 1"),
+        ("f 1//6148914691236517206 2 3", "normal index 6148914691236517206 in a face is out of range: the file defines 1"),
+        ("f 1 2 99999999999999999999", "\"99999999999999999999\" in a face is not an index"),
+        ("f 1 2 x", "\"x\" in a face is not an index"),
+        ("f 1/2/3/4 2 3", "\"1/2/3/4\" is not a corner of a face (vertex/texture/normal)"),
+        ("f // // //", "\"//\" is not a corner of a face (vertex/texture/normal)"),
+    ];
+    for (face, expected) in cases {
+        assert_eq!(refused_obj(&format!("{vertices}{face}\n")), format!("bad.obj:6: {expected}"));
+    }
+}
+
+#[test]
+fn meshes_without_triangles_are_refused() {
+    assert_eq!(refused_obj(""), "bad.obj:1: the file ends here and has no faces");
+    assert_eq!(refused_obj("v 0 0 0\n# nothing\n"), "bad.obj:2: the file ends here and has no faces");
+    assert_eq!(
+        refused_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3\n"),
+        "bad.obj:4: the file has no triangles; lines and points are not drawn"
+    );
+    assert_eq!(
+        refused_obj("v 0 0 0\nv 1 1 1\nv 2 2 2\n\nf 1 2 3\nf 1 1 2\n"),
+        "bad.obj:5: every triangle has zero area (2); nothing is left to draw"
+    );
+}
+
+#[test]
+fn triangles_without_area_are_dropped_with_one_warning() {
+    let folder = Folder::new();
+    let text = format!("usemtl m\n{TRIANGLE}f 1 1 2\nf 1 2 2\nl 1 2 3\n");
+    let scene = Scene::load(&folder.write("flat.obj", text)).unwrap();
+    assert_eq!(scene.meshes[0].triangles.len(), 1);
+    assert_eq!(
+        folder.warnings(&scene),
+        [
+            "flat.obj:8: lines and points are not drawn: ignored",
+            "flat.obj:6: triangles without area: 2 dropped, the first on this line",
+            "flat.obj:1: material \"m\" is not defined; drawn in grey",
+        ]
+    );
+}
+
+#[test]
+fn normals_that_the_file_does_not_have_are_left_out_with_a_warning() {
+    let folder = Folder::new();
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1/7 2/2/8 3/3/9\nf 1/1/7 2/2/8 3/3/9\n";
+    let scene = Scene::load(&folder.write("bare.obj", text)).unwrap();
+    assert_eq!((&scene.meshes[0].normals, &scene.meshes[0].uvs), (&None, &None));
+    assert_eq!(
+        folder.warnings(&scene)[..2],
+        [
+            "bare.obj:4: faces name normals, but the file defines none: 2 lines ignored, the first is this",
+            "bare.obj:4: faces name texture coordinates, but the file defines none: 2 lines ignored, the first is this",
+        ]
+    );
+}
+
+#[test]
+fn faces_with_and_without_normals_do_not_mix_them_up() {
+    let folder = Folder::new();
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 2\nvn 0 1 0\nvt 0 0\nf 1 2 3\nf 1//1 2//1 3//2\n\
+                f 1/1/1 2//1 4\nf 1/1 2/1 3/1\n";
+    let scene = Scene::load(&folder.write("mixed.obj", text)).unwrap();
+    let formats: Vec<_> =
+        scene.meshes.iter().map(|mesh| (mesh.uvs.is_some(), mesh.normals.is_some(), mesh.triangles.len())).collect();
+    assert_eq!(formats, [(false, false, 2), (true, false, 1), (false, true, 1)]);
+    let normals = scene.meshes[2].normals.as_ref().unwrap();
+    assert_eq!(normals.as_slice(), [[0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]);
+    for mesh in &scene.meshes {
+        assert!(mesh.normals.as_ref().is_none_or(|normals| normals.len() == mesh.positions.len()));
+        assert!(mesh.uvs.as_ref().is_none_or(|uvs| uvs.len() == mesh.positions.len()));
+        assert!(mesh.triangles.iter().flatten().all(|&i| (i as usize) < mesh.positions.len()));
+    }
+}
+
+#[test]
+fn files_of_every_age_and_system_are_read() {
+    let folder = Folder::new();
+    let same = |name: &str, text: &[u8]| {
+        let scene = Scene::load(&folder.write(name, text)).unwrap();
+        assert_eq!(scene.meshes[0].positions, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], "{name}");
+        assert_eq!(scene.meshes[0].triangles, [[0, 1, 2]], "{name}");
+    };
+    same("windows.obj", TRIANGLE.replace('\n', "\r\n").as_bytes());
+    same("mac.obj", TRIANGLE.replace('\n', "\r").as_bytes());
+    same("mark.obj", format!("\u{feff}{TRIANGLE}").as_bytes());
+    same("latin1.obj", &[b"# caf\xe9\n".as_slice(), TRIANGLE.as_bytes()].concat());
+    same("continued.obj", b"v 0 0 0\nv 1 \\\n0 0\nv 0 1 0\nf 1 \\\n 2 \\\n 3");
+    same("comments.obj", b"v 0 0 0 # one\nv 1 0 0\nv 0 1 0\n  f 1 2 3 # a face\n");
+    same("tabs.obj", b"v\t0\t0\t0\nv 1 0 0\nv 0 1 0\nusemtl\tred\nf\t1 2 3\n");
+    same("later.obj", b"f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
+}
+
+#[test]
+fn coordinates_of_a_map_projection_keep_their_digits() {
+    let folder = Folder::new();
+    let text = "v 680000.001 5400000.002 0\nv 680000.003 5400000.002 0\nv 680000.001 5400000.004 0\nf 1 2 3\n";
+    let scene = Scene::load(&folder.write("far.obj", text)).unwrap();
+    assert_eq!(scene.meshes[0].positions[0], [680_000.001, 5_400_000.002, 0.0]);
+}
+
+#[test]
+fn materials_come_from_the_scene_then_the_library_then_grey() {
+    let folder = Folder::new();
+    folder.write(
+        "sub/two parts.mtl",
+        "newmtl hull\nKd 0.1 0.2 0.3\nnewmtl glow\nKd 0 0 0\nKe 5 4 3\nnewmtl red\nKd 0 0 1\n",
+    );
+    folder.write(
+        "sub/ship.obj",
+        "mtllib .\\two parts.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl hull\nf 1 2 3\nusemtl glow\nf 1 2 3\nusemtl red\nf 1 2 3\n\
+         usemtl keel\nf 1 2 3\n",
+    );
+    let text = "[materials.red]\nbase_color = [0.6, 0.1, 0.1]\n[materials.blue]\nbase_color = [0, 0, 0.5]\n\
+                [[meshes]]\nfile = 'sub\\ship.obj'\n\
+                [[meshes]]\nfile = \"sub/ship.obj\"\nmaterials = { hull = \"blue\" }\ntransform = [{ translate = [2, 0, 0] }]\n\
+                [[meshes]]\nfile = \"sub/ship.obj\"\nmaterial = \"red\"\n\
+                [[meshes]]\nfile = \"sub/ship.obj\"\ntransform = [{ scale = 2 }, { translate = [0, 0, 1] }]\n";
+    let scene = Scene::load(&folder.write("scene.toml", text)).unwrap();
+    let names = |mesh: usize| -> Vec<&str> {
+        scene.meshes[mesh].materials.iter().map(|&m| scene.materials[m as usize].name.as_str()).collect()
+    };
+    assert_eq!(names(scene.instances[0].mesh), ["hull", "glow", "red", "grey"]);
+    assert_eq!(names(scene.instances[1].mesh), ["blue", "glow", "red", "grey"]);
+    assert_eq!(names(scene.instances[2].mesh), ["red"; 4]);
+    assert_eq!(scene.instances[3].mesh, scene.instances[0].mesh, "the same file and materials share a mesh");
+    let corner = scene.instances[3].transform.transform_point3([1.0, 0.0, 0.0].into());
+    assert_eq!(corner.to_array(), [2.0, 0.0, 1.0]);
+    let red = &scene.materials[scene.meshes[0].materials[2] as usize];
+    let Model::Diffuse { base_color: Color::Constant(color) } = red.lobes[0].model else { panic!("{red:?}") };
+    assert_eq!(color.r, 0.6);
+    assert_eq!(folder.warnings(&scene), ["sub/ship.obj:11: material \"keel\" is not defined; drawn in grey"]);
+}
+
+#[test]
+fn a_bad_line_in_a_library_costs_only_that_line() {
+    let folder = Folder::new();
+    folder.write(
+        "m.mtl",
+        "Kd 1 1 1\nnewmtl a\nKd 0.5 0.5\nKd spectral x.rfl\nKs 2 0 0\nillum two\nmap_Kd\nNi 1.5\nd 0.5\nmap_Bump b.png\nKt 1 1 1\n",
+    );
+    let scene = Scene::load(&folder.write("m.obj", format!("mtllib gone.mtl m.mtl\nusemtl a\n{TRIANGLE}"))).unwrap();
+    assert_eq!(
+        folder.warnings(&scene),
+        [
+            "m.obj:1: the material library \"gone.mtl\" does not exist",
+            "m.mtl:1: \"Kd\" before the first newmtl is ignored",
+            "m.mtl:3: \"Kd 0.5 0.5\" is ignored: Kd has 3 numbers, here are 2",
+            "m.mtl:4: \"Kd spectral x.rfl\" is ignored: \"spectral\" is not a number",
+            "m.mtl:5: \"Ks 2 0 0\" is out of range and becomes 1 0 0",
+            "m.mtl:6: \"illum two\" is ignored: \"two\" is not a number",
+            "m.mtl:7: \"map_Kd\" has no value and is ignored",
+            "m.mtl: not supported yet: Kt (in \"a\")",
+            "m.mtl: not supported yet: Ni (in \"a\")",
+            "m.mtl: not supported yet: bump (in \"a\")",
+            "m.mtl: not supported yet: d or Tr (drawn opaque) (in \"a\")",
+        ]
+    );
+}
+
+#[test]
+fn base_colour_images_are_found_decoded_and_shared() {
+    let folder = Folder::new();
+    let red = Picture { width: 1, height: 1, rgb: vec![[1.0, 0.0, 0.0]] };
+    fs::create_dir_all(folder.0.join("tex")).unwrap();
+    write_png(&folder.0.join("tex/red wood.png"), &red, 0.0).unwrap();
+    folder.write("m.mtl", "newmtl a\nKd 0.5 0.5 0.5\nmap_Kd -s 2 2 2 C:\\work\\tex\\red wood.png\nnewmtl b\nmap_Kd tex\\red wood.png\n");
+    let obj = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n";
+    let scene = Scene::load(&folder.write("m.obj", obj)).unwrap();
+    assert_eq!(
+        folder.warnings(&scene),
+        [
+            "m.mtl: not supported yet: option -s of map_Kd (in \"a\")",
+            "m.mtl: the image \"C:\\work\\tex\\red wood.png\" does not exist; Kd is used alone (in \"a\")",
+        ]
+    );
+    assert_eq!(scene.textures.len(), 1);
+    assert_eq!(scene.textures[0].sample(0.3, 0.3).r, 1.0);
+    folder.write("tex/red wood.png", "not an image");
+    let text = folder.refusal(&folder.0.join("m.obj"));
+    assert!(text.starts_with("tex/red wood.png: the image cannot be decoded: "), "{text}");
+}
+
+#[test]
+fn pictures_that_cannot_be_written_say_so_and_leave_nothing_behind() {
+    let folder = Folder::new();
+    let picture = Picture { width: 1, height: 1, rgb: vec![[1.0; 3]] };
+    let nowhere = folder.0.join("absent/a.exr");
+    let text = write_exr(&nowhere, &picture, &Metadata::default()).unwrap_err().to_string();
+    assert!(folder.strip(&text).starts_with("absent/a.exr: cannot be written: "), "{text}");
+    let text = write_png(&nowhere, &picture, 0.0).unwrap_err().to_string();
+    assert!(folder.strip(&text).starts_with("absent/a.exr: cannot be written: "), "{text}");
+    let taken = folder.0.join("taken.png"); // a folder of that name cannot be replaced by a file
+    fs::create_dir(&taken).unwrap();
+    assert!(write_png(&taken, &picture, 0.0).is_err());
+    assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 1);
+}
