@@ -1,2 +1,3 @@
-//! x
-fn main() {}
+//! The tests that cross crates: one binary, one module per theme.
+
+mod scene_files; // Scene files, good and bad: what loads, what it becomes, and the very words of each refusal.

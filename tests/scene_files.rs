@@ -68,7 +68,6 @@ fn every_torture_file_loads_or_says_why_in_under_a_second() {
     let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
     let root = std::env::var_os("GONIO_DATA").map_or(default, PathBuf::from).join("obj_torture");
     let Ok(families) = fs::read_dir(&root) else {
-        // A checkout without the data is a complete checkout.
         println!("obj_torture: not there ({}), not run", root.display());
         return;
     };
@@ -110,6 +109,40 @@ fn an_obj_alone_gets_a_camera_and_a_white_sky() {
 }
 
 #[test]
+fn the_example_in_the_documentation_loads() {
+    let folder = Folder::new();
+    folder.write("room.obj", format!("usemtl Ceiling_Light\n{TRIANGLE}"));
+    folder.write("teapot.obj", TRIANGLE);
+    let page = include_str!("../docs/scene-format.md");
+    let example = page.split("```toml").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    let scene = Scene::load(&folder.write("scene.toml", example)).unwrap();
+    assert_eq!(folder.warnings(&scene), Vec::<String>::new());
+    assert_eq!((scene.film.width, scene.film.spp, scene.integrator.max_depth), (512, 64, 8));
+    assert_eq!(scene.materials[scene.meshes[0].materials[0] as usize].name, "lamp");
+    assert_eq!(scene.materials[scene.meshes[1].materials[0] as usize].name, "gold");
+}
+
+#[test]
+fn every_key_of_film_camera_and_integrator_arrives() {
+    let folder = Folder::new();
+    folder.write("tri.obj", TRIANGLE);
+    let text = "[film]\nwidth = 1\nheight = 65536\nspp = 1_048_576\nexposure = -1.5\n\
+                [camera]\norigin = [1, 2, 3]\ntarget = [0, 0, 0.5]\nup = [0, 0, 1]\nvfov = 90\n\
+                [integrator]\nmax_depth = 0\nrussian_roulette = false\nseed = 0xffff_ffff_ffff_ffff\n\
+                [[meshes]]\nfile = \"tri.obj\"\n";
+    let scene = Scene::load(&folder.write("scene.toml", text)).unwrap();
+    let film = scene.film;
+    assert_eq!((film.width, film.height, film.spp, film.exposure), (1, 65_536, 1_048_576, -1.5));
+    let camera = scene.camera;
+    assert_eq!((camera.origin.to_array(), camera.target.to_array()), ([1.0, 2.0, 3.0], [0.0, 0.0, 0.5]));
+    assert_eq!((camera.up.to_array(), camera.vfov), ([0.0, 0.0, 1.0], 90.0));
+    let integrator = scene.integrator;
+    assert_eq!((integrator.max_depth, integrator.russian_roulette, integrator.seed), (0, false, u64::MAX));
+    let dark = "the scene has no light: the picture will be black";
+    assert_eq!(folder.warnings(&scene), ["tri.obj: faces without a material are drawn in grey", dark]);
+}
+
+#[test]
 fn missing_files_are_named() {
     let folder = Folder::new();
     let text = folder.refusal(&folder.0.join("absent.obj"));
@@ -122,7 +155,10 @@ fn missing_files_are_named() {
         refused_scene("[materials.a]\nbase_color = { texture = \"absent.png\" }\n[[meshes]]\nfile = \"tri.obj\"\n"),
         "scene.toml:2: the image \"absent.png\" does not exist"
     );
-    assert_eq!(folder.refusal(&folder.write("a.gltf", "")), "a.gltf: is neither a scene file (.toml) nor an OBJ file (.obj)");
+    assert_eq!(
+        folder.refusal(&folder.write("a.gltf", "")),
+        "a.gltf: is neither a scene file (.toml) nor an OBJ file (.obj)"
+    );
 }
 
 #[test]
@@ -162,13 +198,28 @@ fn values_out_of_range_are_refused_with_their_line() {
         ("[film]\nspp = 1048577", "scene.toml:2: \"spp\" must be a whole number from 1 to 1048576, not 1048577"),
         ("[film]\nexposure = nan", "scene.toml:2: \"exposure\" must be a number from -100 to 100, not nan"),
         ("[camera]\nvfov = 180", "scene.toml:2: \"vfov\" must be a number from 0.01 to 179, not 180"),
-        ("[camera]\norigin = [0, inf, 0]", "scene.toml:2: \"origin\" must be a number from -1000000000000 to 1000000000000, not inf"),
+        (
+            "[camera]\norigin = [0, inf, 0]",
+            "scene.toml:2: \"origin\" must be a number from -1000000000000 to 1000000000000, not inf",
+        ),
         ("[camera]\norigin = [0, 1]", "scene.toml:2: \"origin\" must be 3 numbers, not an array of 2"),
-        ("[integrator]\nseed = -1", "scene.toml:2: \"seed\" must be a whole number from 0 to 18446744073709551615, not -1"),
+        (
+            "[integrator]\nseed = -1",
+            "scene.toml:2: \"seed\" must be a whole number from 0 to 18446744073709551615, not -1",
+        ),
         ("[environment]\nradiance = -1.0", "scene.toml:2: \"radiance\" must be a number from 0 to 1000000, not -1.0"),
-        ("[materials.a]\nbase_color = [0, 1.5, 0]", "scene.toml:2: \"base_color\" must be a number from 0 to 1, not 1.5"),
-        ("[materials.a]\ntype = \"glass\"", "scene.toml:2: type \"glass\" is not possible here; known are \"diffuse\", \"mirror\", \"conductor\", \"mix\""),
-        ("[materials.a]\ntype = \"conductor\"\nf0 = 0.9\nroughness = 0.001", "scene.toml:4: \"roughness\" gives an alpha below 0.0001: use type = \"mirror\""),
+        (
+            "[materials.a]\nbase_color = [0, 1.5, 0]",
+            "scene.toml:2: \"base_color\" must be a number from 0 to 1, not 1.5",
+        ),
+        (
+            "[materials.a]\ntype = \"glass\"",
+            "scene.toml:2: type \"glass\" is not possible here; known are \"diffuse\", \"mirror\", \"conductor\", \"mix\"",
+        ),
+        (
+            "[materials.a]\ntype = \"conductor\"\nf0 = 0.9\nroughness = 0.001",
+            "scene.toml:4: \"roughness\" gives an alpha below 0.0001: use type = \"mirror\"",
+        ),
     ];
     for (text, expected) in cases {
         assert_eq!(refused_scene(&format!("{text}{mesh}")), expected);
@@ -180,8 +231,14 @@ fn values_out_of_range_are_refused_with_their_line() {
     for (transform, expected) in [
         ("{ scale = 0 }", "a scale of 0 squeezes space flat"),
         ("{ rotate = { axis = [0, 0, 0], degrees = 1 } }", "\"axis\" has no length"),
-        ("{ shear = 1 }", "unknown key \"shear\" in a step of the transform; known are \"scale\", \"rotate\", \"translate\", \"matrix\""),
-        ("{ matrix = [1,0,0,0, 1,0,0,0, 0,0,1,0, 0,0,0,1] }", "the transform cannot be inverted: it is not finite or squeezes space flat"),
+        (
+            "{ shear = 1 }",
+            "unknown key \"shear\" in a step of the transform; known are \"scale\", \"rotate\", \"translate\", \"matrix\"",
+        ),
+        (
+            "{ matrix = [1,0,0,0, 1,0,0,0, 0,0,1,0, 0,0,0,1] }",
+            "the transform cannot be inverted: it is not finite or squeezes space flat",
+        ),
         ("{ scale = 1e10 }", "the scene is 1e10 m wide; it must be 1e-6 to 1e9"),
     ] {
         let text = refused_scene(&format!("[[meshes]]\nfile = \"tri.obj\"\ntransform = [{transform}]\n"));
@@ -195,12 +252,24 @@ fn numbers_that_are_not_finite_are_refused_with_their_line() {
     assert_eq!(refused_obj(&format!("v 0 nan 0\n{rest}")), "bad.obj:1: \"nan\" in a vertex is not finite");
     assert_eq!(refused_obj(&format!("v 0 0 -inf\n{rest}")), "bad.obj:1: \"-inf\" in a vertex is not finite");
     assert_eq!(refused_obj(&format!("v 0 0 1e999\n{rest}")), "bad.obj:1: \"1e999\" in a vertex is not finite");
-    assert_eq!(refused_obj(&format!("\nv 0 0 1e40\n{rest}")), "bad.obj:2: \"1e40\" in a vertex is beyond the largest allowed, 1e12");
+    assert_eq!(
+        refused_obj(&format!("\nv 0 0 1e40\n{rest}")),
+        "bad.obj:2: \"1e40\" in a vertex is beyond the largest allowed, 1e12"
+    );
     assert_eq!(refused_obj(&format!("v 0 0,5 0\n{rest}")), "bad.obj:1: \"0,5\" in a vertex is not a number");
-    assert_eq!(refused_obj(&format!("v 0 0 0 0\n{rest}")), "bad.obj:1: the vertex divided by its weight 0 is not finite");
-    assert_eq!(refused_obj("v 0 0\n"), "bad.obj:1: a vertex has 3 coordinates, then optionally a weight or a colour; here are 2 numbers");
+    assert_eq!(
+        refused_obj(&format!("v 0 0 0 0\n{rest}")),
+        "bad.obj:1: the vertex divided by its weight 0 is not finite"
+    );
+    assert_eq!(
+        refused_obj("v 0 0\n"),
+        "bad.obj:1: a vertex has 3 coordinates, then optionally a weight or a colour; here are 2 numbers"
+    );
     assert_eq!(refused_obj(&format!("vn 0 nan 0\nv 0 0 0\n{rest}")), "bad.obj:1: \"nan\" in a normal is not finite");
-    assert_eq!(refused_obj(&format!("vt nan 0\nv 0 0 0\n{rest}")), "bad.obj:1: \"nan\" in a texture coordinate is not finite");
+    assert_eq!(
+        refused_obj(&format!("vt nan 0\nv 0 0 0\n{rest}")),
+        "bad.obj:1: \"nan\" in a texture coordinate is not finite"
+    );
 }
 
 #[test]
@@ -212,7 +281,10 @@ fn indices_out_of_range_are_refused_with_their_line() {
         ("f -4 -2 -1", "vertex index -4 in a face is out of range: 3 are defined above it"),
         ("f 1/2 2/2 3/2", "texture coordinate index 2 in a face is out of range: the file defines 1"),
         ("f 1//9 2//9 3//9", "normal index 9 in a face is out of range: the file defines 1"),
-        ("f 1//6148914691236517206 2 3", "normal index 6148914691236517206 in a face is out of range: the file defines 1"),
+        (
+            "f 1//6148914691236517206 2 3",
+            "normal index 6148914691236517206 in a face is out of range: the file defines 1",
+        ),
         ("f 1 2 99999999999999999999", "\"99999999999999999999\" in a face is not an index"),
         ("f 1 2 x", "\"x\" in a face is not an index"),
         ("f 1/2/3/4 2 3", "\"1/2/3/4\" is not a corner of a face (vertex/texture/normal)"),
@@ -377,7 +449,10 @@ fn base_colour_images_are_found_decoded_and_shared() {
     let red = Picture { width: 1, height: 1, rgb: vec![[1.0, 0.0, 0.0]] };
     fs::create_dir_all(folder.0.join("tex")).unwrap();
     write_png(&folder.0.join("tex/red wood.png"), &red, 0.0).unwrap();
-    folder.write("m.mtl", "newmtl a\nKd 0.5 0.5 0.5\nmap_Kd -s 2 2 2 C:\\work\\tex\\red wood.png\nnewmtl b\nmap_Kd tex\\red wood.png\n");
+    folder.write(
+        "m.mtl",
+        "newmtl a\nKd 0.5 0.5 0.5\nmap_Kd -s 2 2 2 C:\\work\\tex\\red wood.png\nnewmtl b\nmap_Kd tex\\red wood.png\n",
+    );
     let obj = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n";
     let scene = Scene::load(&folder.write("m.obj", obj)).unwrap();
     assert_eq!(

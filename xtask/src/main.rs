@@ -1,2 +1,46 @@
-//! x
-fn main() {}
+//! `cargo xtask`: what takes more than one plain cargo command. It orchestrates, links none of our crates, and needs
+//! nothing but std, so that it builds in a second.
+
+mod cargo;
+mod ci;
+mod elf;
+mod no_std;
+mod peers;
+mod sources;
+mod validate;
+
+use std::process::ExitCode;
+
+const USAGE: &str = "\
+cargo xtask validate [ARG]...    build as the tests are built, then `gonio validate ARG...`; the report goes to
+                                 target/validate unless ARG says `--out DIR`; exit code of `gonio validate`
+cargo xtask no-std               prove that the kernel needs no std, no allocator and cannot panic
+cargo xtask peers [--rounds N] [--spp N] [--python PATH]
+                                 the Cornell box against Mitsuba 3, in turns; Python with mitsuba is `python3`
+cargo xtask ratio                how much faster eight lanes are than one direction at a time
+cargo xtask ci                   all that CI runs: .ci/run
+";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let Some((command, rest)) = arguments.split_first() else {
+        print!("{USAGE}");
+        return ExitCode::SUCCESS;
+    };
+    let result = match (command.as_str(), rest) {
+        ("validate", rest) => validate::run(rest),
+        ("no-std", []) => no_std::run(),
+        ("peers", rest) => peers::run(rest),
+        ("ratio", []) => cargo::run(cargo::cargo().args(["bench", "--bench", "kernel", "--", "--ratio"])),
+        ("ci", []) => ci::run(),
+        ("help" | "-h" | "--help", []) => {
+            print!("{USAGE}");
+            return ExitCode::SUCCESS;
+        }
+        _ => Err(format!("no such command: {}\n{USAGE}", arguments.join(" "))),
+    };
+    result.unwrap_or_else(|error| {
+        eprintln!("xtask: {error}");
+        ExitCode::FAILURE
+    })
+}

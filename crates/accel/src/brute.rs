@@ -74,7 +74,7 @@ fn splat_corners(triangle: &WorldTriangle) -> [Vec3<F32x8>; 3] {
 }
 
 #[inline(always)]
-fn record(best: &mut Hit8, mask: Mask8, c: &Crossing, id: TriangleId) {
+pub(crate) fn record(best: &mut Hit8, mask: Mask8, c: &Crossing, id: TriangleId) {
     best.t = F32x8::select(mask, c.t, best.t);
     best.bary = [F32x8::select(mask, c.bary[0], best.bary[0]), F32x8::select(mask, c.bary[1], best.bary[1])];
     best.prim = U32x8::select(mask, U32x8::splat(id.prim), best.prim);
@@ -83,7 +83,7 @@ fn record(best: &mut Hit8, mask: Mask8, c: &Crossing, id: TriangleId) {
 }
 
 /// Those lanes of `hit` that the filter lets block.
-fn filtered(filter: &dyn Opacity, packet: usize, hit: Mask8, c: &Crossing, id: TriangleId) -> Mask8 {
+pub(crate) fn filtered(filter: &dyn Opacity, packet: usize, hit: Mask8, c: &Crossing, id: TriangleId) -> Mask8 {
     let mut bits = hit.to_bits();
     for lane in 0..F32x8::LANES {
         if bits >> lane & 1 != 0 && !filter.blocks(packet * F32x8::LANES + lane, &scalar_hit(c, lane, id)) {
@@ -96,8 +96,8 @@ fn filtered(filter: &dyn Opacity, packet: usize, hit: Mask8, c: &Crossing, id: T
 /// One lane of a crossing.
 pub(crate) fn scalar_hit(c: &Crossing, lane: usize, id: TriangleId) -> Hit {
     Hit {
-        t: c.t.to_array()[lane],
-        bary: c.bary.map(|b| b.to_array()[lane]),
+        t: c.t.lane(lane),
+        bary: [c.bary[0].lane(lane), c.bary[1].lane(lane)],
         prim: id.prim,
         mesh: id.mesh,
         instance: id.instance,

@@ -2,8 +2,9 @@
 //!
 //! `obvhs` builds a binary tree (PLOC with reinsertion); `obvhs/tree.rs` collapses it into nodes of eight children whose
 //! boxes lie side by side, over blocks of eight triangles side by side. One ray is tested against eight boxes or eight
-//! triangles at a time. The traversal of `obvhs` itself is not used: it is several times slower and its triangle test leaks.
+//! triangles at a time. So few triangles that a tree does not pay ([`few`]) are kept in a list. The traversal of `obvhs` itself is not used: it is several times slower and its triangle test leaks.
 
+mod few;
 mod tree;
 
 use crate::Accel;
@@ -12,18 +13,25 @@ use crate::geometry::Geometry;
 use crate::ray::{Hit, Hit8, NO_HIT, Opacity, Ray8, RayKind};
 use crate::triangle::{Beam, intersect};
 use gonio_kernel::{F32x8, Mask8, Real, U32x8, Vec3};
+use few::Few;
 use tree::{Child, Node, Tree};
 
-/// A tree of eight-wide nodes over the triangles of a geometry.
+/// A tree of eight-wide nodes over the triangles of a geometry, or a list of a few.
 #[derive(Clone, Debug)]
 pub struct Obvhs {
     tree: Tree,
+    few: Option<Few>,
 }
 
 impl Obvhs {
     /// Builds the tree: deterministic, O(n log n).
     pub fn new(geometry: &Geometry) -> Self {
-        Self { tree: Tree::build(geometry) }
+        Self { few: Few::of(geometry), ..Self::always_tree(geometry) }
+    }
+
+    /// Builds a tree even where a list would be faster: for tests of the tree.
+    pub fn always_tree(geometry: &Geometry) -> Self {
+        Self { tree: Tree::build(geometry), few: None }
     }
 }
 
@@ -33,46 +41,63 @@ impl Accel for Obvhs {
     }
 
     fn closest(&self, _kind: RayKind, rays: &[Ray8], hits: &mut [Hit8]) {
+        if let Some(few) = &self.few {
+            return few.closest(rays, hits);
+        }
         let mut stack = Vec::with_capacity(self.tree.stack_size());
         for (ray, hit) in rays.iter().zip(hits) {
             let beam = Beam::new(ray.origin, ray.dir, self.tree.lo, self.tree.hi);
-            let found = each_live_lane(ray, |lane, t_min, t_max| {
-                self.closest_of_one(&beam.splat_lane(lane), t_min, t_max, &mut stack)
+            let mut found = [MISS; F32x8::LANES];
+            for_each_lane(ray.mask, |lane| {
+                found[lane] = self.closest_of_one(
+                    &beam.splat_lane(lane),
+                    ray.t_min.lane(lane),
+                    ray.t_max.lane(lane),
+                    &mut stack,
+                );
             });
-            *hit = gather(&found);
+            *hit = side_by_side(&found);
         }
     }
 
     fn occluded(&self, _kind: RayKind, rays: &[Ray8], filter: Option<&dyn Opacity>, blocked: &mut [Mask8]) {
+        if let Some(few) = &self.few {
+            return few.occluded(rays, filter, blocked);
+        }
         let mut stack = Vec::with_capacity(self.tree.stack_size());
         for ((packet, ray), blocked) in rays.iter().enumerate().zip(blocked) {
             let beam = Beam::new(ray.origin, ray.dir, self.tree.lo, self.tree.hi);
-            let found = each_live_lane(ray, |lane, t_min, t_max| {
+            let mut bits = 0;
+            for_each_lane(ray.mask, |lane| {
+                let one = beam.splat_lane(lane);
                 let filter = filter.map(|f| (f, packet * F32x8::LANES + lane));
-                self.one_is_occluded(&beam.splat_lane(lane), t_min, t_max, filter, &mut stack).then_some(())
+                let (t_min, t_max) = (ray.t_min.lane(lane), ray.t_max.lane(lane));
+                bits |= u32::from(self.one_is_occluded(&one, t_min, t_max, filter, &mut stack)) << lane;
             });
-            let bits = found.iter().enumerate().fold(0, |bits, (lane, f)| bits | u32::from(f.is_some()) << lane);
             *blocked = Mask8::from_bits(bits);
         }
     }
 }
 
-/// Asks `f(lane, t_min, t_max)` for each live lane.
-fn each_live_lane<T: Copy>(ray: &Ray8, mut f: impl FnMut(usize, f32, f32) -> Option<T>) -> [Option<T>; F32x8::LANES] {
-    let (t_min, t_max, live) = (ray.t_min.to_array(), ray.t_max.to_array(), ray.mask.to_bits());
-    std::array::from_fn(|lane| if live >> lane & 1 != 0 { f(lane, t_min[lane], t_max[lane]) } else { None })
+const MISS: Hit =
+    Hit { t: f32::INFINITY, bary: [0.0; 2], prim: NO_HIT, mesh: NO_HIT, instance: NO_HIT };
+
+#[inline(always)]
+fn for_each_lane(mask: Mask8, mut f: impl FnMut(usize)) {
+    let mut bits = mask.to_bits();
+    while bits != 0 {
+        f(bits.trailing_zeros() as usize);
+        bits &= bits - 1;
+    }
 }
 
-/// Eight scalar hits side by side.
-fn gather(hits: &[Option<Hit>; F32x8::LANES]) -> Hit8 {
-    let real = |f: fn(&Hit) -> f32, miss: f32| F32x8::new(hits.map(|h| h.as_ref().map_or(miss, f)));
-    let index = |f: fn(&Hit) -> u32| U32x8::new(hits.map(|h| h.as_ref().map_or(NO_HIT, f)));
+fn side_by_side(hits: &[Hit; F32x8::LANES]) -> Hit8 {
     Hit8 {
-        t: real(|h| h.t, f32::INFINITY),
-        bary: [real(|h| h.bary[0], 0.0), real(|h| h.bary[1], 0.0)],
-        prim: index(|h| h.prim),
-        mesh: index(|h| h.mesh),
-        instance: index(|h| h.instance),
+        t: F32x8::from_fn(|l| hits[l].t),
+        bary: [F32x8::from_fn(|l| hits[l].bary[0]), F32x8::from_fn(|l| hits[l].bary[1])],
+        prim: U32x8::from_fn(|l| hits[l].prim),
+        mesh: U32x8::from_fn(|l| hits[l].mesh),
+        instance: U32x8::from_fn(|l| hits[l].instance),
     }
 }
 
@@ -80,8 +105,9 @@ fn gather(hits: &[Option<Hit>; F32x8::LANES]) -> Hit8 {
 type Entry = (f32, Child);
 
 impl Obvhs {
-    fn closest_of_one(&self, beam: &Beam, t_min: f32, t_max: f32, stack: &mut Vec<Entry>) -> Option<Hit> {
-        let mut best: Option<(Hit, u32)> = None;
+    fn closest_of_one(&self, beam: &Beam, t_min: f32, t_max: f32, stack: &mut Vec<Entry>) -> Hit {
+        let mut best = MISS;
+        let mut best_index = NO_HIT;
         let mut t_best = t_max;
         let up = beam.points_up();
         stack.clear();
@@ -95,20 +121,18 @@ impl Obvhs {
                 tree::Opened::Node(node) => push_children(node, beam, up, t_min, t_best, stack),
                 tree::Opened::Leaf(leaf) => {
                     let c = intersect(beam, &leaf.corners, F32x8::splat(t_min), F32x8::splat(t_best));
-                    let mut bits = c.mask.to_bits();
-                    while bits != 0 {
-                        let lane = bits.trailing_zeros() as usize;
-                        bits &= bits - 1;
-                        let (t, index) = (c.t.to_array()[lane], leaf.index[lane]);
-                        if best.as_ref().is_none_or(|(b, i)| t < b.t || (t == b.t && index < *i)) {
-                            best = Some((scalar_hit(&c, lane, self.tree.ids[index as usize]), index));
+                    for_each_lane(c.mask, |lane| {
+                        let (t, index) = (c.t.lane(lane), leaf.index[lane]);
+                        if t < best.t || (t == best.t && index < best_index) {
+                            best = scalar_hit(&c, lane, self.tree.ids[index as usize]);
+                            best_index = index;
                             t_best = t;
                         }
-                    }
+                    });
                 }
             }
         }
-        best.map(|(hit, _)| hit)
+        best
     }
 
     fn one_is_occluded(

@@ -64,7 +64,7 @@ impl Beam {
     /// Lane `lane` of these rays, in all eight lanes.
     #[inline(always)]
     pub fn splat_lane(&self, lane: usize) -> Self {
-        let one = |x: F32x8| F32x8::splat(x.to_array()[lane & 7]);
+        let one = |x: F32x8| F32x8::splat(x.lane(lane));
         let each = |v: Vec3<F32x8>| Vec3::new(one(v.x), one(v.y), one(v.z));
         Self {
             origin: each(self.origin),
@@ -76,10 +76,17 @@ impl Beam {
         }
     }
 
+    /// A point, relative to the origin, on the two axes across the direction.
+    #[inline(always)]
+    pub fn project(&self, v: Vec3<F32x8>) -> [F32x8; 2] {
+        let a = v - self.origin;
+        [a.dot(self.across[0]), a.dot(self.across[1])]
+    }
+
     /// Whether the directions point up each axis, for a beam of one ray: chooses which planes are near.
     #[inline(always)]
     pub fn points_up(&self) -> [bool; 3] {
-        [self.inverse.x, self.inverse.y, self.inverse.z].map(|i| i.to_array()[0] > 0.0)
+        [self.inverse.x, self.inverse.y, self.inverse.z].map(|i| i.lane(0) > 0.0)
     }
 
     /// The padded slab interval \[t_near, t_far\] of boxes whose near and far planes are given.
@@ -105,57 +112,115 @@ pub struct Crossing {
 /// Tests lane by lane whether the ray meets the triangle with t_min ≤ t ≤ t_max.
 #[inline(always)]
 pub fn intersect(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: F32x8, t_max: F32x8) -> Crossing {
-    let a = corners.map(|v| v - beam.origin);
-    let [p0, p1, p2] = a.map(|a| beam.across.map(|axis| a.dot(axis)));
-    let edge = |p: [F32x8; 2], q: [F32x8; 2]| p[0] * q[1] - p[1] * q[0];
-    let (e0, e1, e2) = (edge(p1, p2), edge(p2, p0), edge(p0, p1));
-    let inside = e0.min(e1).min(e2).ge(F32x8::ZERO) | e0.max(e1).max(e2).le(F32x8::ZERO);
-    let mut crossing = Crossing { mask: inside, t: F32x8::ZERO, bary: [F32x8::ZERO; 2] };
-    if inside.to_bits() != 0 {
-        let (t, in_front) = distance(beam, corners, &a, t_min, t_max);
-        let det = e0 + e1 + e2;
-        let inv_det = det.recip();
-        crossing.mask = inside & in_front & !det.same(F32x8::ZERO);
-        crossing.t = t;
-        crossing.bary = [e1 * inv_det, e2 * inv_det];
-    }
-    crossing
+    let [c0, c1, c2] = *corners;
+    let edges = Edges::new(beam.project(c0), beam.project(c1), beam.project(c2));
+    edges.cross(beam, || Plane::of(corners), t_min, t_max)
 }
 
-/// The distance at which the ray meets the triangle, limited to the padded box, and whether it lies in front.
-#[inline(always)]
-fn distance(
-    beam: &Beam,
-    corners: &[Vec3<F32x8>; 3],
-    a: &[Vec3<F32x8>; 3],
-    t_min: F32x8,
-    t_max: F32x8,
-) -> (F32x8, Mask8) {
-    let [v0, v1, v2] = *corners;
-    let (e1, e2) = (v1 - v0, v2 - v0);
-    let n = e1.cross(e2);
-    let height = n.dot(a[0]);
-    // The sum of the absolute products bounds what rounding can do to the height.
-    let (f1, f2) = (e1.abs(), e2.abs());
-    let products = Vec3::new(
-        f1.y.mul_add(f2.z, f1.z * f2.y),
-        f1.z.mul_add(f2.x, f1.x * f2.z),
-        f1.x.mul_add(f2.y, f1.y * f2.x),
-    );
-    let off_plane = height.abs().gt(products.dot(a[0].abs()) * F32x8::splat(PLANE_ERROR));
+/// The three edge functions of projected triangles.
+#[derive(Clone, Copy, Debug)]
+pub struct Edges {
+    e: [F32x8; 3],
+    inside: Mask8,
+}
 
-    let lo = Vec3::new(v0.x.min(v1.x).min(v2.x), v0.y.min(v1.y).min(v2.y), v0.z.min(v1.z).min(v2.z));
-    let hi = Vec3::new(v0.x.max(v1.x).max(v2.x), v0.y.max(v1.y).max(v2.y), v0.z.max(v1.z).max(v2.z));
-    let order = |i: F32x8, lo: F32x8, hi: F32x8| {
-        let up = i.gt(F32x8::ZERO);
-        (F32x8::select(up, lo, hi), F32x8::select(up, hi, lo))
-    };
-    let (x, y, z) = (
-        order(beam.inverse.x, lo.x, hi.x),
-        order(beam.inverse.y, lo.y, hi.y),
-        order(beam.inverse.z, lo.z, hi.z),
-    );
-    let [t_near, t_far] = beam.slab(Vec3::new(x.0, y.0, z.0), Vec3::new(x.1, y.1, z.1));
-    let t = (height / n.dot(beam.dir)).max(t_near).min(t_far);
-    (t, off_plane & t_near.le(t_far) & t.ge(t_min) & t.le(t_max))
+impl Edges {
+    /// From projected corners, see [`Beam::project`].
+    #[inline(always)]
+    pub fn new(p0: [F32x8; 2], p1: [F32x8; 2], p2: [F32x8; 2]) -> Self {
+        let edge = |p: [F32x8; 2], q: [F32x8; 2]| p[0] * q[1] - p[1] * q[0];
+        let e = [edge(p1, p2), edge(p2, p0), edge(p0, p1)];
+        let inside = e[0].min(e[1]).min(e[2]).ge(F32x8::ZERO) | e[0].max(e[1]).max(e[2]).le(F32x8::ZERO);
+        Self { e, inside }
+    }
+
+    /// Completes the test; the plane is asked for only if some lane is inside.
+    #[inline(always)]
+    pub fn cross(&self, beam: &Beam, plane: impl FnOnce() -> Plane<F32x8>, t_min: F32x8, t_max: F32x8) -> Crossing {
+        let mut crossing = Crossing { mask: self.inside, t: F32x8::ZERO, bary: [F32x8::ZERO; 2] };
+        if self.inside.to_bits() != 0 {
+            let (t, in_front) = plane().distance(beam, t_min, t_max);
+            let det = self.e[0] + self.e[1] + self.e[2];
+            let inv_det = det.recip();
+            crossing.mask = self.inside & in_front & !det.same(F32x8::ZERO);
+            crossing.t = t;
+            crossing.bary = [self.e[1] * inv_det, self.e[2] * inv_det];
+        }
+        crossing
+    }
+}
+
+/// What the distance test needs of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane<R> {
+    /// The first corner.
+    pub corner: Vec3<R>,
+    /// (v₁ − v₀) × (v₂ − v₀), of twice the triangle's area.
+    pub normal: Vec3<R>,
+    /// The same with absolute products and sums: bounds the rounding of the normal.
+    pub products: Vec3<R>,
+    /// Lower corner of the triangle's box.
+    pub lo: Vec3<R>,
+    /// Upper corner of the triangle's box.
+    pub hi: Vec3<R>,
+}
+
+impl<R: Real> Plane<R> {
+    /// The plane of a triangle.
+    #[inline(always)]
+    pub fn of(corners: &[Vec3<R>; 3]) -> Self {
+        let [v0, v1, v2] = *corners;
+        let (e1, e2) = (v1 - v0, v2 - v0);
+        let (f1, f2) = (e1.abs(), e2.abs());
+        let products = Vec3::new(
+            f1.y.mul_add(f2.z, f1.z * f2.y),
+            f1.z.mul_add(f2.x, f1.x * f2.z),
+            f1.x.mul_add(f2.y, f1.y * f2.x),
+        );
+        let least = |a: R, b: R, c: R| a.min(b).min(c);
+        let most = |a: R, b: R, c: R| a.max(b).max(c);
+        Self {
+            corner: v0,
+            normal: e1.cross(e2),
+            products,
+            lo: Vec3::new(least(v0.x, v1.x, v2.x), least(v0.y, v1.y, v2.y), least(v0.z, v1.z, v2.z)),
+            hi: Vec3::new(most(v0.x, v1.x, v2.x), most(v0.y, v1.y, v2.y), most(v0.z, v1.z, v2.z)),
+        }
+    }
+}
+
+impl Plane<f32> {
+    /// The same plane in every lane.
+    #[inline(always)]
+    pub fn splat(&self) -> Plane<F32x8> {
+        let each = |v: Vec3<f32>| Vec3::new(F32x8::splat(v.x), F32x8::splat(v.y), F32x8::splat(v.z));
+        Plane {
+            corner: each(self.corner),
+            normal: each(self.normal),
+            products: each(self.products),
+            lo: each(self.lo),
+            hi: each(self.hi),
+        }
+    }
+}
+
+impl Plane<F32x8> {
+    /// The distance at which the ray meets the plane, limited to the padded box, and whether it lies in front.
+    #[inline(always)]
+    fn distance(&self, beam: &Beam, t_min: F32x8, t_max: F32x8) -> (F32x8, Mask8) {
+        let to_corner = self.corner - beam.origin;
+        let height = self.normal.dot(to_corner);
+        let rounding = self.products.dot(to_corner.abs()) * F32x8::splat(PLANE_ERROR);
+        let off_plane = height.abs().gt(rounding);
+        let order = |i: F32x8, lo: F32x8, hi: F32x8| {
+            let up = i.gt(F32x8::ZERO);
+            (F32x8::select(up, lo, hi), F32x8::select(up, hi, lo))
+        };
+        let x = order(beam.inverse.x, self.lo.x, self.hi.x);
+        let y = order(beam.inverse.y, self.lo.y, self.hi.y);
+        let z = order(beam.inverse.z, self.lo.z, self.hi.z);
+        let [t_near, t_far] = beam.slab(Vec3::new(x.0, y.0, z.0), Vec3::new(x.1, y.1, z.1));
+        let t = (height / self.normal.dot(beam.dir)).max(t_near).min(t_far);
+        (t, off_plane & t_near.le(t_far) & t.ge(t_min) & t.le(t_max))
+    }
 }

@@ -20,10 +20,17 @@ pub(crate) enum Target {
     File(PathBuf),
 }
 
+impl Target {
+    /// `-` is standard output, anything else a file.
+    pub(crate) fn named(text: &str) -> Self {
+        if text == "-" { Self::Stdout } else { Self::File(text.into()) }
+    }
+}
+
 impl FromStr for Target {
     type Err = Infallible;
     fn from_str(text: &str) -> Result<Self, Infallible> {
-        Ok(if text == "-" { Self::Stdout } else { Self::File(text.into()) })
+        Ok(Self::named(text))
     }
 }
 

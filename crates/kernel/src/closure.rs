@@ -139,3 +139,96 @@ impl<'a, R: Real> Unguarded<'a, R> {
         sum
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fresnel::Fresnel;
+    use crate::lobe::{Conductor, Lambert, Mirror};
+    use crate::microfacet::Ggx;
+    use crate::rgb::Rgb;
+    use crate::testing::{Random, close, special_values};
+
+    fn matte() -> Lambert<f32> {
+        Lambert::new(Rgb::new(0.4, 0.2, 0.1))
+    }
+    fn metal() -> Conductor<f32> {
+        let ggx = Ggx { alpha_x: 0.2, alpha_y: 0.4 };
+        Conductor::new(ggx, Fresnel::Schlick { f0: Rgb::new(0.9, 0.7, 0.3) })
+    }
+    fn mirror() -> Mirror<f32> {
+        Mirror::new(Rgb::splat(0.5))
+    }
+
+    #[test]
+    fn values_add_and_densities_average_by_the_probability_of_their_lobe() {
+        let mut random = Random(11);
+        let surface = Surface::black().with(0.5, matte()).with(0.25, mirror()).with(0.75, metal());
+        for _ in 0..1000 {
+            let (wo, wi) = (random.above(), random.above());
+            let value = Closure::new(&surface, wo).eval(wi);
+            let (a, b) = (matte().eval(wo, wi), metal().eval(wo, wi));
+            let shares = [0.5 * matte().albedo_estimate(wo).luminance(), 0.25 * 0.5, 0.75 * {
+                metal().albedo_estimate(wo).luminance()
+            }];
+            let sum: f32 = shares.iter().sum();
+            let pdf = (shares[0] * a.pdf + shares[2] * b.pdf) / sum;
+            assert!(close((value.pdf / pdf).into(), 1.0, 1e-5), "{value:?} and {pdf}");
+            assert!(close((value.f_cos.g / (0.5 * a.f_cos.g + 0.75 * b.f_cos.g)).into(), 1.0, 1e-5));
+        }
+    }
+
+    #[test]
+    fn the_mirror_of_a_mixture_is_chosen_and_weighed_as_a_discrete_event() {
+        let wo = Vec3::new(0.6_f32, 0.0, 0.8);
+        let surface = Surface::black().with(0.5, Lambert::new(Rgb::splat(0.5))).with(0.5, mirror());
+        let closure = Closure::new(&surface, wo);
+        let (first, second) = (closure.sample([0.25, 0.5, 0.5]), closure.sample([0.75, 0.5, 0.5]));
+        assert!(!first.event.discrete && first.event.lobe == 0 && closure.discrete(&first.event).pdf == 0.0);
+        assert!(second.event.discrete && second.event.lobe == 1);
+        assert_eq!(second.wi, Vec3::new(-0.6, 0.0, 0.8));
+        // Chosen half of the time, worth 0.5 · 0.5 whenever it is: weight times probability is 0.5 · 0.5 · 0.5.
+        let worth = closure.discrete(&second.event);
+        assert!(close(worth.pdf.into(), 0.5, 1e-6) && close(worth.f_cos.r.into(), 0.125, 1e-6));
+    }
+
+    #[test]
+    fn a_lobe_that_is_absent_or_black_is_never_chosen() {
+        let mut random = Random(12);
+        let absent = Surface::black().with(0.0, mirror()).with(1.0, matte());
+        let black = Surface::black().with(1.0, Mirror::new(Rgb::zero())).with(1.0, matte());
+        for surface in [absent, black] {
+            for _ in 0..1000 {
+                let sample = Closure::new(&surface, random.above()).sample([random.unit(), 0.5, 0.5]);
+                assert!(sample.event.failed || sample.event.lobe == 1);
+            }
+        }
+        assert!(Closure::new(&Surface::black(), Vec3::<f32>::unit_z()).sample([0.5; 3]).event.failed);
+    }
+
+    fn assert_black(surface: &Surface<f32>, wo: Vec3<f32>, wi: Vec3<f32>, u: [f32; 3]) {
+        let closure = Closure::new(surface, wo);
+        let (value, sample) = (closure.eval(wi), closure.sample(u));
+        let worth = closure.discrete(&sample.event);
+        for x in [value.f_cos.r, value.f_cos.g, value.f_cos.b, value.pdf, worth.f_cos.r, worth.pdf] {
+            assert_eq!(x.to_bits(), 0, "{wo:?} {wi:?}: {value:?} {worth:?}");
+        }
+        assert!(sample.event.failed && sample.wi.is_direction(), "{wo:?}: {sample:?}");
+    }
+
+    #[test]
+    fn outside_the_domain_everything_is_exactly_zero() {
+        let up = Vec3::unit_z();
+        let surface = Surface::black().with(0.5, matte()).with(0.25, mirror()).with(0.25, metal());
+        for x in special_values() {
+            let bad = Vec3::new(x, 0.3, 0.9); // never a unit vector
+            assert_black(&surface, bad, up, [0.5; 3]);
+            let value = Closure::new(&surface, up).eval(bad);
+            assert_eq!((value.pdf.to_bits(), value.f_cos.g.to_bits()), (0, 0), "{bad:?}");
+            if !(0.0..=1.0).contains(&x) {
+                assert_black(&Surface::of(Lambert::new(Rgb::new(0.5, x, 0.5))), up, up, [0.5; 3]);
+                assert_black(&Surface::black().with(x, mirror()), up, up, [0.5; 3]);
+            }
+        }
+    }
+}

@@ -86,3 +86,92 @@ pub fn sin2_theta<R: Real>(w: Vec3<R>) -> R {
 pub fn both_above<R: Real>(wo: Vec3<R>, wi: Vec3<R>) -> R::Mask {
     wo.z.gt(R::ZERO) & wi.z.gt(R::ZERO)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Random, close, special_values};
+
+    /// Orthonormal to 1e-6 and right-handed.
+    fn assert_frame(frame: Frame<f32>, from: Vec3<f32>) {
+        let Frame { x, y, z } = frame;
+        for (a, b, dot) in [(x, x, 1.0), (y, y, 1.0), (z, z, 1.0), (x, y, 0.0), (y, z, 0.0), (z, x, 0.0)] {
+            assert!(close(a.dot(b).into(), dot, 1e-6), "from {from:?}: {frame:?}");
+        }
+        assert!(close(x.cross(y).dot(z).into(), 1.0, 1e-6), "from {from:?}: {frame:?} is left-handed");
+    }
+
+    /// Every octant, axes and diagonals, with zeros of either sign, from denormal to huge.
+    fn normals() -> impl Iterator<Item = Vec3<f32>> {
+        const PARTS: [f32; 5] = [-1.0, -0.0, 0.0, 1e-4, 1.0];
+        let each = PARTS.into_iter().flat_map(|x| PARTS.into_iter().flat_map(move |y| PARTS.map(|z| [x, y, z])));
+        each.flat_map(|v| [1e-44, 1e-30, 1.0, 1e30].map(|length| Vec3::from(v.map(|x: f32| x * length))))
+            .filter(|n| n.length2() > 0.0 || n.abs().x.max(n.abs().y).max(n.abs().z) > 0.0)
+    }
+
+    #[test]
+    fn a_frame_from_any_normal_is_right_handed_and_keeps_the_normal() {
+        for n in normals() {
+            let frame = Frame::from_normal(n);
+            assert_frame(frame, n);
+            let along = |v: Vec3<f32>| Vec3::new(f64::from(v.x), f64::from(v.y), f64::from(v.z));
+            let exact = along(n) * along(n).length().recip();
+            assert!(close((along(frame.z) - exact).length(), 0.0, 1e-6), "{n:?} became {:?}", frame.z);
+        }
+    }
+
+    #[test]
+    fn a_frame_from_normal_and_tangent_keeps_the_normal_and_leans_the_tangent() {
+        let mut random = Random(6);
+        for n in normals() {
+            let tangent = random.direction();
+            let frame = Frame::from_normal_tangent(n, tangent);
+            assert_frame(frame, n);
+            assert_eq!(frame.z, Frame::from_normal(n).z);
+            assert!(close(frame.y.dot(tangent).into(), 0.0, 1e-5) && frame.x.dot(tangent) > 0.0, "{n:?} {tangent:?}");
+        }
+    }
+
+    #[test]
+    fn the_local_frame_is_its_own_frame_and_minus_z_turns_it_over() {
+        let up = Frame::from_normal(Vec3::<f32>::unit_z());
+        assert_eq!((up.x, up.y), (Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0)));
+        let down = Vec3::new(0.0, 0.0, -1.0);
+        assert_frame(Frame::from_normal(down), down);
+        assert_eq!(Frame::from_normal(down).z, down);
+    }
+
+    #[test]
+    fn a_tangent_parallel_to_the_normal_is_ignored() {
+        for n in normals() {
+            for tangent in [n, -n, n * 0.5] {
+                assert_frame(Frame::from_normal_tangent(n, tangent), n);
+            }
+        }
+    }
+
+    #[test]
+    fn no_input_breaks_a_frame() {
+        let values = special_values();
+        for &x in &values {
+            for &y in &values {
+                for &z in &values {
+                    let n = Vec3::new(x, y, z);
+                    assert_frame(Frame::from_normal(n), n);
+                    assert_frame(Frame::from_normal_tangent(Vec3::new(y, x, 1.0), n), n);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn local_and_back_is_the_same_direction() {
+        let mut random = Random(7);
+        for _ in 0..1000 {
+            let (frame, v) = (Frame::from_normal(random.direction()), random.direction());
+            let back = frame.to_world(frame.to_local(v));
+            assert!(close((back - v).length().into(), 0.0, 1e-6), "{v:?} came back as {back:?}");
+            assert!(close(frame.to_local(frame.z).z.into(), 1.0, 1e-6));
+        }
+    }
+}

@@ -92,3 +92,89 @@ impl<R: Real> Fresnel<R> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::close;
+
+    #[test]
+    fn at_normal_incidence_glass_reflects_the_square_of_n_minus_1_over_n_plus_1() {
+        assert!(close(dielectric(1.0, 1.5), 0.04, 1e-15));
+        assert!(close(dielectric(1.0, 1.0 / 1.5), 0.04, 1e-15));
+        assert_eq!(dielectric(0.7, 1.0), 0.0); // no interface, no reflection
+    }
+
+    #[test]
+    fn at_brewsters_angle_only_perpendicular_light_is_reflected() {
+        let n = 1.5_f64; // tan θ = n, where r∥ = 0 and r⊥ = (1 − n²)/(1 + n²)
+        let cos = 1.0 / (1.0 + n * n).sqrt();
+        let perpendicular = ((1.0 - n * n) / (1.0 + n * n)).powi(2);
+        assert!(close(dielectric(cos, n), 0.5 * perpendicular, 1e-15));
+    }
+
+    #[test]
+    fn beyond_the_critical_angle_everything_is_reflected() {
+        let critical = (1.0 - 1.0 / (1.5_f64 * 1.5)).sqrt(); // sin θ = 1/1.5
+        assert_eq!(dielectric(critical - 1e-6, 1.0 / 1.5), 1.0);
+        assert_eq!(dielectric(0.0, 1.0 / 1.5), 1.0);
+        let inside = dielectric(critical + 1e-6, 1.0 / 1.5);
+        assert!(inside < 1.0 && inside > 0.95, "{inside}");
+    }
+
+    #[test]
+    fn a_conductor_without_extinction_is_a_dielectric() {
+        for eta in [0.5_f64, 0.9, 1.1, 1.5, 4.0] {
+            for step in 0..=100 {
+                let cos = f64::from(step) / 100.0;
+                let (c, d) = (conductor(cos, eta, 0.0), dielectric(cos, eta));
+                assert!(close(c, d, 1e-7), "eta {eta}, cos {cos}: {c} and {d}");
+            }
+        }
+    }
+
+    #[test]
+    fn at_normal_incidence_silver_reflects_its_textbook_value() {
+        let (eta, k) = (0.135_f64, 3.99);
+        let textbook = ((eta - 1.0).powi(2) + k * k) / ((eta + 1.0).powi(2) + k * k);
+        assert!(close(conductor(1.0, eta, k), textbook, 1e-14));
+        assert!(close(conductor(1.0_f32, 0.135, 3.99).into(), textbook, 1e-6));
+    }
+
+    #[test]
+    fn at_grazing_incidence_every_interface_is_a_mirror() {
+        assert!(close(dielectric(0.0, 1.5), 1.0, 1e-15));
+        assert!(close(conductor(0.0, 0.2, 3.9), 1.0, 1e-15));
+        assert_eq!(schlick(0.0, 0.04), 1.0);
+        assert_eq!(schlick(1.0, 0.04), 0.04);
+    }
+
+    /// Reflection from a conductor, in the complex form of the textbook.
+    fn complex_conductor(cos: f64, eta: f64, k: f64) -> f64 {
+        // u + iv = √((η + ik)² − sin²θ)
+        let (re, im) = (eta * eta - k * k - (1.0 - cos * cos), 2.0 * eta * k);
+        let (u, v) = {
+            let u = ((re.hypot(im) + re.abs()) / 2.0).sqrt();
+            if re >= 0.0 { (u, im / (2.0 * u)) } else { (im / (2.0 * u), u) }
+        };
+        let perpendicular = ((u - cos).powi(2) + v * v) / ((u + cos).powi(2) + v * v);
+        // r∥ = r⊥ · (u + iv − sin θ tan θ)/(u + iv + sin θ tan θ)
+        let st = (1.0 - cos * cos) / cos;
+        let parallel = perpendicular * ((u - st).powi(2) + v * v) / ((u + st).powi(2) + v * v);
+        0.5 * (perpendicular + parallel)
+    }
+
+    #[test]
+    fn the_real_form_of_a_conductor_is_its_complex_form() {
+        for (eta, k) in [(0.22, 3.68), (0.96, 2.59), (1.17, 2.46), (3.1, 0.01), (0.05, 0.3), (4.0, 20.0)] {
+            for step in 1..=50 {
+                let cos = step as f32 / 50.0;
+                let exact = complex_conductor(cos.into(), eta, k);
+                assert!(close(conductor(f64::from(cos), eta, k), exact, 1e-12), "eta {eta}, k {k}, cos {cos}");
+                let (eta32, k32) = (eta as f32, k as f32);
+                let exact = complex_conductor(cos.into(), eta32.into(), k32.into());
+                assert!(close(conductor(cos, eta32, k32).into(), exact, 2e-6), "eta {eta}, k {k}, cos {cos} in f32");
+            }
+        }
+    }
+}

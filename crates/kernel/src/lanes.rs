@@ -23,6 +23,12 @@ pub struct Mask8(f32x8);
 #[repr(transparent)]
 pub struct U32x8(pub u32x8);
 
+/// `[f(0), f(1), …]`, one per lane. Written out, because a closure per lane must be inlined to become eight loads.
+#[inline(always)]
+pub fn each_lane<T>(f: impl Fn(usize) -> T) -> [T; F32x8::LANES] {
+    [f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7)]
+}
+
 impl F32x8 {
     /// How many lanes there are.
     pub const LANES: usize = 8;
@@ -32,10 +38,20 @@ impl F32x8 {
     pub const fn new(lanes: [f32; 8]) -> Self {
         Self(f32x8::new(lanes))
     }
+    /// Lane *i* is `f(i)`.
+    #[inline(always)]
+    pub fn from_fn(f: impl Fn(usize) -> f32) -> Self {
+        Self::new(each_lane(f))
+    }
     /// `x` in every lane.
     #[inline(always)]
     pub fn splat(x: f32) -> Self {
         Self(f32x8::splat(x))
+    }
+    /// Lane `lane` modulo 8.
+    #[inline(always)]
+    pub fn lane(&self, lane: usize) -> f32 {
+        self.0.as_array()[lane & 7]
     }
     /// The lanes in order.
     #[inline(always)]
@@ -79,10 +95,20 @@ impl U32x8 {
     pub const fn new(lanes: [u32; 8]) -> Self {
         Self(u32x8::new(lanes))
     }
+    /// Lane *i* is `f(i)`.
+    #[inline(always)]
+    pub fn from_fn(f: impl Fn(usize) -> u32) -> Self {
+        Self::new(each_lane(f))
+    }
     /// `x` in every lane.
     #[inline(always)]
     pub fn splat(x: u32) -> Self {
         Self(u32x8::splat(x))
+    }
+    /// Lane `lane` modulo 8.
+    #[inline(always)]
+    pub fn lane(&self, lane: usize) -> u32 {
+        self.0.as_array()[lane & 7]
     }
     /// The lanes in order.
     #[inline(always)]
@@ -259,5 +285,95 @@ impl Real for F32x8 {
     #[inline(always)]
     fn int_select(mask: Mask8, yes: U32x8, no: U32x8) -> U32x8 {
         U32x8::select(mask, yes, no)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::sin_cos_turns;
+    use crate::testing::{Random, same_bits, special_values};
+    use std::vec::Vec;
+
+    /// Triples of special values in all combinations, random bits, and ordinary numbers; a multiple of eight.
+    fn triples() -> Vec<[f32; 3]> {
+        let (values, mut random) = (special_values(), Random(10));
+        let each = values.iter().flat_map(|&a| values.iter().map(move |&b| (a, b)));
+        let mut triples: Vec<_> = each.flat_map(|(a, b)| values.iter().map(move |&c| [a, b, c])).collect();
+        triples.extend((0..4096).map(|_| [(); 3].map(|()| f32::from_bits(random.bits() as u32))));
+        triples.extend((0..4096).map(|_| [(); 3].map(|()| 8.0 * random.unit() - 4.0)));
+        triples.truncate(triples.len() / 8 * 8);
+        triples
+    }
+
+    /// Every operation on reals that has a real result, in order.
+    fn reals<R: Real>([a, b, c]: [R; 3]) -> Vec<R> {
+        let mask = a.lt(b);
+        let (mut sum, mut product) = (a, a);
+        sum += b;
+        product *= b;
+        let sums = [a + b, a - b, a * b, a / b, -a, sum, product, a.mul_add(b, c), a.sqr(), a.recip()];
+        let others = [a.sqrt(), a.abs(), a.min(b), a.max(b), a.copysign(b), a.clamp(-1.5, 0.5), a.or_zero(mask)];
+        let chosen = [R::select(mask, a, c), R::select(!mask, a, c), a.round_to_int().0, R::lit(0.1), R::ZERO, R::ONE];
+        let (sin, cos) = sin_cos_turns(a);
+        sums.into_iter().chain(others).chain(chosen).chain([sin, cos]).collect()
+    }
+
+    /// Every operation on reals that has a truth as result, in order.
+    fn truths<R: Real>([a, b, c]: [R; 3]) -> Vec<R::Mask> {
+        let (x, y) = (a.round_to_int().1, b.round_to_int().1);
+        let (lt, le) = (a.lt(b), b.le(c));
+        let compared = [lt, le, a.gt(b), a.ge(b), a.same(b), a.is_finite(), !lt, lt & le, lt | le];
+        let whole = [R::int_bit(x, 0), R::int_bit(x, 1), R::int_bit(x, 21), R::int_same(x, y)];
+        let chosen = [R::int_same(R::int_select(lt, x, R::int(3)), y), R::Mask::splat(true), R::Mask::splat(false)];
+        compared.into_iter().chain(whole).chain(chosen).collect()
+    }
+
+    #[test]
+    fn every_lane_has_the_bits_of_the_scalar() {
+        for eight in triples().chunks_exact(8) {
+            let lanes = [0, 1, 2].map(|part| F32x8::new(core::array::from_fn(|lane| eight[lane][part])));
+            let (together, true_together) = (reals(lanes), truths(lanes));
+            for (lane, &alone) in eight.iter().enumerate() {
+                for (op, (&x, scalar)) in together.iter().zip(reals(alone)).enumerate() {
+                    let x = x.to_array()[lane];
+                    assert!(same_bits(x, scalar), "real {op} of {alone:?}: {x:e} in lanes, {scalar:e} alone");
+                }
+                for (op, (x, scalar)) in true_together.iter().zip(truths(alone)).enumerate() {
+                    assert_eq!(x.lane(lane), scalar, "truth {op} of {alone:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn min_and_max_choose_the_second_where_the_first_is_not_smaller_or_larger() {
+        assert_eq!(Real::min(0.0_f32, -0.0).to_bits(), (-0.0_f32).to_bits());
+        assert_eq!(Real::max(-0.0_f32, 0.0).to_bits(), 0.0_f32.to_bits());
+        assert_eq!((Real::min(f32::NAN, 1.0), Real::max(f32::NAN, 1.0)), (1.0, 1.0));
+        assert!(Real::min(1.0, f32::NAN).is_nan() && Real::max(1.0, f32::NAN).is_nan());
+    }
+
+    #[test]
+    fn a_mask_counts_its_lanes_from_the_first() {
+        for count in 0..=9 {
+            let mask = Mask8::first(count);
+            let bits = (1_u32 << count.min(8)) - 1;
+            assert_eq!(mask.to_bits(), bits);
+            assert_eq!(Mask8::from_bits(bits).to_bits(), bits);
+            assert_eq!((mask.any(), mask.all()), (count > 0, count >= 8));
+            assert_eq!((mask.lane(0), mask.lane(7)), (count > 0, count >= 8));
+        }
+    }
+
+    #[test]
+    fn whole_numbers_wrap_and_convert() {
+        let x = U32x8::splat(u32::MAX);
+        assert_eq!((x + U32x8::splat(2)).to_array(), [1; 8]);
+        assert_eq!((x * x).to_array(), [1; 8]);
+        assert_eq!((x >> 31).to_array(), [1; 8]);
+        assert_eq!(((x ^ U32x8::splat(5)) & U32x8::splat(7)).to_array(), [2; 8]);
+        assert_eq!(U32x8::new([0, 1, 2, 3, 4, 5, 6, 16_777_217]).to_real().to_array()[7], 16_777_216.0);
+        assert_eq!(U32x8::new([0, 1, 2, 3, 4, 5, 6, 7]).lt(U32x8::splat(3)).to_bits(), 0b111);
     }
 }

@@ -27,6 +27,9 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+#[cfg(test)]
+extern crate std;
+
 pub mod closure;
 pub mod frame;
 pub mod fresnel;
@@ -37,13 +40,15 @@ pub mod microfacet;
 mod real;
 mod rgb;
 pub mod surface;
+#[cfg(test)]
+mod testing;
 pub mod units;
 mod vec3;
 pub mod warp;
 
 pub use closure::Closure;
 pub use frame::Frame;
-pub use lanes::{F32x8, Mask8, U32x8};
+pub use lanes::{F32x8, Mask8, U32x8, each_lane};
 pub use lobe::{Event, Lobe, Sample, Value};
 pub use real::{Mask, Precision, Real};
 pub use rgb::Rgb;

@@ -59,3 +59,60 @@ fn cos_coefficients<R: Real>() -> &'static [f64] {
         ],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Random;
+    use core::f64::consts::TAU;
+
+    /// sin and cos of u turns by std. The reduction is exact, so the errors are the rounding of 2πx and of std.
+    fn std_sin_cos(u: f64) -> (f64, f64) {
+        let quarters = (u * 4.0).round();
+        let (s, c) = ((u - quarters * 0.25) * TAU).sin_cos();
+        match quarters.rem_euclid(4.0) as u8 {
+            0 => (s, c),
+            1 => (c, -s),
+            2 => (-s, -c),
+            _ => (-c, s),
+        }
+    }
+
+    /// Distance in units of the last place of `exact` in a format of `bits` significant bits; below `floor` absolute.
+    fn ulps(x: f64, exact: f64, bits: i32) -> f64 {
+        let exponent = exact.abs().log2().floor().max(-2.0) as i32;
+        (x - exact).abs() / 2.0_f64.powi(exponent - bits + 1)
+    }
+
+    #[test]
+    fn quarter_turns_are_exact() {
+        let quarters = [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)];
+        for turn in -8..=8 {
+            let (sin, cos) = quarters[(turn as usize) % 4];
+            assert_eq!(sin_cos_turns(turn as f32 * 0.25), (sin as f32, cos as f32), "{turn} quarters");
+            assert_eq!(sin_cos_turns(f64::from(turn) * 0.25), (sin, cos), "{turn} quarters");
+        }
+    }
+
+    #[test]
+    fn single_precision_is_within_two_units_of_the_last_place() {
+        let mut random = Random(8);
+        for range in [1.0_f32, 16.0, 500_000.0] {
+            for _ in 0..100_000 {
+                let u = (2.0 * random.unit() - 1.0) * range;
+                let ((s, c), (sin, cos)) = (sin_cos_turns(u), std_sin_cos(u.into()));
+                assert!(ulps(s.into(), sin, 24) <= 2.0 && ulps(c.into(), cos, 24) <= 2.0, "{u}: {s} {sin}, {c} {cos}");
+            }
+        }
+    }
+
+    #[test]
+    fn double_precision_is_within_two_units_of_std_which_has_one_of_its_own() {
+        let mut random = Random(9);
+        for _ in 0..100_000 {
+            let u = (random.bits() as f64 / 2.0_f64.powi(63)) - 1.0;
+            let ((s, c), (sin, cos)) = (sin_cos_turns(u), std_sin_cos(u));
+            assert!(ulps(s, sin, 53) <= 3.0 && ulps(c, cos, 53) <= 3.0, "{u}: {s} {sin}, {c} {cos}");
+        }
+    }
+}

@@ -104,3 +104,22 @@ impl<R> From<Rgb<R>> for [R; 3] {
         [c.r, c.g, c.b]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn white_has_luminance_one_and_green_weighs_most() {
+        assert!((Rgb::splat(1.0_f64).luminance() - 1.0).abs() < 1e-15);
+        assert_eq!(Rgb::new(0.0, 1.0, 0.0).luminance(), 0.7152_f64);
+        assert_eq!(Rgb::new(0.1_f32, 0.3, 0.2).largest(), 0.3);
+    }
+
+    #[test]
+    fn a_channel_that_is_nan_lies_within_no_range() {
+        assert!(Rgb::new(0.0_f32, 0.5, 1.0).within(0.0, 1.0));
+        assert!(!Rgb::new(0.0, f32::NAN, 1.0).within(0.0, 1.0));
+        assert_eq!(Rgb::new(f32::NAN, 1.0, -1.0).or_zero(false), Rgb::zero());
+    }
+}

@@ -76,3 +76,36 @@ impl<R: Real> Surface<R> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lobe::Mirror;
+    use crate::rgb::Rgb;
+
+    #[test]
+    fn roughness_one_half_is_a_width_of_one_quarter() {
+        assert_eq!(Alpha::from(Roughness(0.5_f32)), Alpha(0.25));
+    }
+
+    #[test]
+    fn a_surface_holds_four_lobes_and_leaves_out_the_fifth() {
+        let mirror = Mirror::new(Rgb::splat(0.1_f32));
+        let mut surface = Surface::black();
+        for count in 0..=MAX_LOBES {
+            assert_eq!(surface.lobes().count(), count);
+            assert_eq!(surface.is_full(), count == MAX_LOBES);
+            surface = surface.with(0.5, mirror);
+        }
+        assert_eq!(surface.lobes().count(), MAX_LOBES);
+    }
+
+    #[test]
+    fn a_parameter_out_of_range_or_nan_leaves_the_domain() {
+        for (weight, reflectance) in [(1.1_f32, 0.5), (-0.1, 0.5), (f32::NAN, 0.5), (1.0, 1.1), (1.0, f32::NAN)] {
+            let surface = Surface::black().with(weight, Mirror::new(Rgb::splat(reflectance)));
+            assert!(!surface.domain(), "weight {weight}, reflectance {reflectance}");
+        }
+        assert!(Surface::<f32>::black().domain());
+    }
+}

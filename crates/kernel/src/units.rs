@@ -15,7 +15,7 @@
 //! use gonio_kernel::units::*;
 //!
 //! let sky = Radiance(2.0_f32);
-//! let ground = sky * ProjectedSolidAngle::hemisphere();
+//! let ground = sky * ProjectedSolidAngle::<f32>::hemisphere();
 //! let flux: Flux<f32> = ground * Area(3.0);
 //! assert!((flux.0 - 2.0 * core::f32::consts::PI * 3.0).abs() < 1e-5);
 //! assert_eq!((Flux(10.0_f32) / SolidAngle(2.0)).0, 5.0);

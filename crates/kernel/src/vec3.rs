@@ -145,3 +145,41 @@ impl<R> From<Vec3<R>> for [R; 3] {
         [v.x, v.y, v.z]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{close, special_values};
+
+    #[test]
+    fn any_finite_vector_but_zero_has_a_direction() {
+        let (values, fallback) = (special_values(), Vec3::new(0.0, 1.0, 0.0));
+        for &x in &values {
+            for &y in &values {
+                let v = Vec3::new(x, y, 0.0);
+                let unit = v.normalize_or(fallback);
+                if x.is_finite() && y.is_finite() && (x != 0.0 || y != 0.0) {
+                    let length = f64::from(x).hypot(y.into());
+                    assert!(close(unit.x.into(), f64::from(x) / length, 2e-7), "{v:?} became {unit:?}");
+                    assert!(close(unit.y.into(), f64::from(y) / length, 2e-7), "{v:?} became {unit:?}");
+                } else {
+                    assert_eq!(unit, fallback, "{v:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_direction_is_finite_and_unit_to_a_thousandth() {
+        let z = |z: f32| Vec3::new(0.0, 0.0, z).is_direction();
+        assert!(z(1.0) && z(-1.0004) && z(0.9996));
+        assert!(!z(1.001) && !z(0.0) && !z(f32::NAN) && !z(f32::INFINITY));
+    }
+
+    #[test]
+    fn the_cross_product_turns_its_sign_with_its_order() {
+        let (a, b) = (Vec3::new(0.1_f32, 0.7, -0.3), Vec3::new(0.9_f32, -0.2, 0.4));
+        assert_eq!(a.cross(b), -b.cross(a));
+        assert_eq!(Vec3::new(1.0, 0.0, 0.0).cross(Vec3::new(0.0, 1.0, 0.0)), Vec3::<f32>::unit_z());
+    }
+}

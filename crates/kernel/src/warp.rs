@@ -52,3 +52,37 @@ pub fn sample_uniform_triangle<R: Real>(u: [R; 2]) -> [R; 2] {
 pub fn pdf_uniform_triangle<R: Real>() -> R {
     R::lit(2.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Random, close};
+
+    #[test]
+    fn the_corners_of_the_square_go_where_the_formulas_say() {
+        assert_eq!(sample_cosine_hemisphere([0.0_f32, 0.3]), Vec3::unit_z());
+        assert_eq!(sample_uniform_sphere([0.0_f32, 0.3]), Vec3::unit_z());
+        let below_one = 1.0 - f32::EPSILON / 2.0;
+        assert!(sample_cosine_hemisphere([below_one, below_one]).z > 0.0);
+    }
+
+    #[test]
+    fn sampled_directions_are_unit_and_their_means_are_known() {
+        let (mut random, count) = (Random(13), 100_000);
+        let (mut cosine, mut sphere, mut triangle) = (0.0, 0.0, 0.0);
+        for _ in 0..count {
+            let u = [random.unit(), random.unit()];
+            let (c, s, [b1, b2]) = (sample_cosine_hemisphere(u), sample_uniform_sphere(u), sample_uniform_triangle(u));
+            assert!(close(c.length().into(), 1.0, 1e-6) && close(s.length().into(), 1.0, 1e-6) && c.z > 0.0);
+            assert!(b1 >= 0.0 && b2 >= 0.0 && b1 + b2 <= 1.0);
+            cosine += f64::from(c.z);
+            sphere += f64::from(s.z);
+            triangle += f64::from(b1);
+        }
+        // E[cosθ] is 2/3, 0 and E[b₁] is 1/3, with standard errors of at most 0.577/√count.
+        let error = 5.0 * 0.577 / f64::from(count).sqrt();
+        for (sum, mean) in [(cosine, 2.0 / 3.0), (sphere, 0.0), (triangle, 1.0 / 3.0)] {
+            assert!(close(sum / f64::from(count), mean, error), "{sum} {mean}");
+        }
+    }
+}

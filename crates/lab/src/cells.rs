@@ -6,7 +6,7 @@
 //! angle: dω = dt dφ. Integration runs over s = √t (dω = 2s ds dφ), because sinθ = s√(2 − s²) is smooth at the pole.
 //! The pilot only places borders: cells need not be exactly equal for a test to be exact.
 
-use crate::probe::{Dir, Kind, Probe};
+use crate::probe::{Dir, Kind, Probe, Worth};
 use crate::quadrature::{Integral, integrate};
 use crate::random::Random;
 use gonio_kernel::Vec3;
@@ -71,7 +71,7 @@ impl Cells {
         Some(slab * SECTORS + find(&self.sectors[slab], phi))
     }
 
-    /// ∫ f_cos dω (three channels) and ∫ pdf dω over each cell.
+    /// ∫ f_cos dω (three channels), ∫ pdf dω and ∫ f_cos²/pdf dω (three channels) over each cell.
     pub(crate) fn integrate(&self, probe: &dyn Probe, wo: Dir) -> Vec<Integral> {
         let (cos, sin) = self.azimuth;
         let f = |s: f64, phi: f64| {
@@ -79,15 +79,24 @@ impl Cells {
             let radius = s * (2.0 - s * s).max(0.0).sqrt();
             let (x, y) = (radius * phi.cos(), radius * phi.sin());
             let wi = probe.snap(Vec3::new(x * cos - y * sin, x * sin + y * cos, z));
-            probe.eval(wo, wi).numbers().map(|v| 2.0 * s * v)
+            let Worth { f_cos: f, pdf } = probe.eval(wo, wi);
+            let square = |f: f64| if f == 0.0 { 0.0 } else { f * f / pdf };
+            [f[0], f[1], f[2], pdf, square(f[0]), square(f[1]), square(f[2])].map(|v| 2.0 * s * v)
         };
         // An f32 integrand is rough at the level of its rounding: refining beyond that is waste.
         let budget = if probe.single() { 2_000 } else { 40_000 };
         let mut cells = Vec::with_capacity(self.len());
-        for (slab, sectors) in self.slabs.windows(2).zip(&self.sectors) {
-            for sector in sectors.windows(2) {
-                let area = [[slab[0].sqrt(), slab[1].sqrt()], [angle(sector[0]), angle(sector[1])]];
-                cells.push(integrate(&f, area, TOLERANCE, budget));
+        let slabs: Vec<f64> = self.slabs.iter().map(|t| t.sqrt()).collect();
+        for (slab, sectors) in graded(&slabs).into_iter().zip(&self.sectors) {
+            let sectors: Vec<f64> = sectors.iter().map(|&p| angle(p)).collect();
+            for sector in graded(&sectors) {
+                let mut cell = Integral::default();
+                for s in slab.windows(2) {
+                    for phi in sector.windows(2) {
+                        cell.add(&integrate(&f, [[s[0], s[1]], [phi[0], phi[1]]], TOLERANCE, budget));
+                    }
+                }
+                cells.push(cell);
             }
         }
         cells
@@ -103,6 +112,33 @@ impl Cells {
 
 /// Absolute tolerance per cell: 10⁻⁹ over all of them, a hundredth of what 10⁷ samples can resolve in an empty bin.
 const TOLERANCE: f64 = 1e-11;
+
+/// Each interval between borders, cut into parts that grow eightfold from the width of a much narrower neighbour. The
+/// outermost cells hold the whole tail of a lobe, with nearly all of its mass at one corner: a rule laid over the whole
+/// cell would miss it, and so would its halves, and they would agree.
+fn graded(borders: &[f64]) -> Vec<Vec<f64>> {
+    const RATIO: f64 = 8.0;
+    let widths: Vec<f64> = borders.windows(2).map(|b| b[1] - b[0]).collect();
+    let from = |width: f64, neighbour: Option<&f64>| -> Vec<f64> {
+        let mut steps = Vec::new();
+        let mut step = neighbour.map_or(width, |&n| n.max(1e-12));
+        while RATIO * step < width {
+            steps.push(step);
+            step *= RATIO;
+        }
+        steps
+    };
+    (0..widths.len())
+        .map(|i| {
+            let left = i.checked_sub(1).and_then(|i| widths.get(i));
+            let mut parts: Vec<f64> = vec![borders[i], borders[i + 1]];
+            parts.extend(from(widths[i], left).iter().map(|step| borders[i] + step));
+            parts.extend(from(widths[i], widths.get(i + 1)).iter().map(|step| borders[i + 1] - step));
+            parts.sort_by(f64::total_cmp);
+            parts
+        })
+        .collect()
+}
 
 /// t = 1 − cosθ in [0, 2] without cancellation, and the pseudo-angle of φ. A direction above the horizon has t < 1.
 fn coordinates(w: Dir, (cos, sin): (f64, f64)) -> Option<(f64, f64)> {

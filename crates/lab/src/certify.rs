@@ -1,7 +1,10 @@
 //! `certify`: the instruments pointed at a model of the user's own, for which an `f32` implementation is enough.
 
 use crate::check::Check;
-use crate::run::Options;
+use crate::finding::Finding;
+use crate::run::{Options, Task, execute, tasks_of_subject};
+use crate::subject::Subject;
+use crate::totality;
 use gonio_kernel::Lobe;
 use std::fmt;
 
@@ -27,8 +30,24 @@ impl fmt::Display for Certificate {
     }
 }
 
-/// Measures a model of the user's own.
+/// Measures a model of the user's own: everything that `f32` alone can answer. What needs more says that it did not run.
 pub fn certify<L: Lobe<f32> + Sync>(name: &str, lobe: &L, options: &Options) -> Certificate {
-    let _ = (lobe, options);
-    Certificate { name: name.to_owned(), checks: Vec::new() }
+    let subject = Subject::of_lobe(name, lobe);
+    let mut tasks = tasks_of_subject(&subject);
+    for view in subject.views() {
+        tasks.push(Task::new("totality", format!("{name} f32"), 0, move |run| totality::measure_probe(view, run)));
+    }
+    for (instrument, needs) in MISSING {
+        tasks.push(Task::new(instrument, name, 0, move |_| Finding::not_run(needs)));
+    }
+    let mut checks = Vec::new();
+    execute(tasks, options, &mut |check| checks.push(check));
+    Certificate { name: name.to_owned(), checks }
 }
+
+/// What an `f32` implementation alone cannot answer.
+const MISSING: [(&str, &str); 3] = [
+    ("precision", "needs an f64 form of the lobe"),
+    ("jacobian", "needs an f64 form of the lobe"),
+    ("lanes", "needs an eight-lane form of the lobe"),
+];

@@ -79,7 +79,7 @@ pub(crate) fn measure_jacobian(view: View, run: &Run) -> Finding {
         // Away from the ends of the range, where the warp's derivative is unbounded.
         let u: [f64; 3] = std::array::from_fn(|_| random.between(0.02, 0.98));
         let center = view.probe.sample(wo, u);
-        if center.kind != Kind::Continuous || wo.z < 1e-4 {
+        if center.kind != Kind::Continuous || wo.z < 1e-3 {
             continue;
         }
         let along = |axis: usize| -> Option<Dir> {

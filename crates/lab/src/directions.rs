@@ -8,11 +8,6 @@ use gonio_kernel::Vec3;
 /// azimuths off the axes and in four quadrants, so that a wrong sign or a swapped axis shows.
 pub(crate) const VIEWS: [(f64, f64); 4] = [(0.999, 0.65), (0.707, 2.2), (0.1736, 4.0), (0.01745, 5.5)];
 
-/// The views as directions, named.
-pub(crate) fn views() -> impl Iterator<Item = (String, Dir)> {
-    VIEWS.into_iter().map(|(cos, phi)| (format!("wo at {:.0}°, azimuth {:.0}°", cos.acos().to_degrees(), phi.to_degrees()), direction(cos, phi)))
-}
-
 /// A direction above the surface: uniform, near the horizon (down to cosθ = 10⁻⁸), near the normal, or along an axis.
 pub(crate) fn any_above(random: &mut Random) -> Dir {
     let phi = random.between(0.0, std::f64::consts::TAU);

@@ -44,8 +44,8 @@ pub(crate) fn measure(f: SinCos, is_single: bool, run: &Run) -> Finding {
         };
         let got = f(u);
         for (got, right) in [(got.0, right.0), (got.1, right.1)] {
-            // Half an eps absolute where |right| < ½ counts as 2 ulp of what is there.
-            let ulp = (0.5 * eps * f64::abs(right)).max(0.25 * eps);
+            // One unit in the last place of `right`; never less than what makes 2 of them half an eps.
+            let ulp = (eps * f64::abs(right).log2().floor().exp2()).max(0.25 * eps);
             finding.raise((got - right).abs() / ulp, || format!("{got} instead of {right} at {u} turns"));
         }
     }

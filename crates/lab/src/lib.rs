@@ -22,9 +22,35 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod cells;
 mod certify;
 mod check;
+mod chi2;
+mod consistency;
+mod directions;
+mod discrete;
+mod elementary;
+mod faults;
+mod finding;
+mod frames;
+mod furnace;
+mod lanes;
+mod mitsuba;
+mod normalisation;
+mod oracle;
+mod precision;
+mod probe;
+mod quadrature;
+mod random;
+mod reciprocity;
+mod reference;
 mod run;
+mod statistics;
+mod subject;
+mod totality;
+mod warps;
+mod weight;
+mod zoo;
 
 pub use certify::{Certificate, certify};
 pub use check::{Check, Effort, Outcome};

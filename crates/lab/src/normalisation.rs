@@ -3,29 +3,24 @@
 //! Failures are part of the law: a visible normal may mirror wo below the horizon. Their frequency is counted and compared
 //! with what quadrature leaves for them, by an exact Poisson test where failures are rare and a z-test where they are not.
 
-use crate::cells::Cells;
-use crate::directions::views;
 use crate::finding::{Finding, Run};
 use crate::probe::Kind;
 use crate::statistics::{mean_p, poisson_p};
-use crate::subject::View;
+use crate::subject::{Prepared, View};
 
 /// The worst of the four views.
 pub(crate) fn measure(view: View, run: &Run) -> Finding {
     let mut random = run.random();
     let mut finding = Finding::p_value(run.level);
     let n = run.by_effort(50_000, 500_000, 5_000_000);
-    for (name, wo) in views() {
-        let wo = view.probe.snap(wo);
-        let cells = Cells::following(view.probe, wo, &mut random);
-        let integral = Cells::total(&cells.integrate(view.reference, wo));
+    for Prepared { name, wo, total: integral, .. } in view.prepared() {
         let (mut failed, mut discrete) = (0, Vec::new());
         let (mut u, mut draws) = (Vec::new(), Vec::new());
         for batch in batches(n) {
             u.clear();
             draws.clear();
             u.extend((0..batch).map(|_| random.sampler_input(view.probe.single())));
-            view.probe.sample_all(wo, &u, &mut draws);
+            view.probe.sample_all(*wo, &u, &mut draws);
             for draw in &draws {
                 match draw.kind {
                     Kind::Failed => failed += 1,

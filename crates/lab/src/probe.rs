@@ -198,7 +198,7 @@ impl<R: Scalar> Probe for SurfaceProbe<R> {
     fn weight_bound(&self, wo: Dir) -> f64 {
         // Lobe i is chosen with pᵢ = wᵢYᵢ/Σwⱼ Yⱼ, and no lobe weighs more than 1 by itself: Σwᵢfᵢ/Σpᵢpdfᵢ ≤ max wᵢ/pᵢ.
         let estimates = self.surface.lobes().filter(|l| l.weight.widen() > 0.0).map(|l| {
-            let y = gonio_kernel::Lobe::albedo_estimate(&l.lobe, narrow::<R>(wo)).luminance().widen();
+            let y = Lobe::albedo_estimate(&l.lobe, narrow::<R>(wo)).luminance().widen();
             (l.weight.widen(), y)
         });
         let bright: Vec<(f64, f64)> = estimates.filter(|(_, y)| *y > 0.0).collect();

@@ -4,13 +4,13 @@
 //! direction in which its highest Legendre coefficient is larger, until the sum of the halves agrees with the whole.
 
 /// Values of the integrands at a point.
-pub(crate) type Four = [f64; 4];
+pub(crate) type Integrands = [f64; 7];
 
 /// An integral, the sum of the differences that were left, and how many points it took.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Integral {
     /// The integrals.
-    pub(crate) value: Four,
+    pub(crate) value: Integrands,
     /// An estimate of the error of the worst of them; pessimistic where the integrand is smooth.
     pub(crate) error: f64,
     /// Evaluations.
@@ -52,7 +52,7 @@ const WEIGHTS: [f64; 7] = [
 ];
 
 /// ∫∫ f over the rectangle, to the absolute tolerance, with at most about `budget` evaluations.
-pub(crate) fn integrate(f: &dyn Fn(f64, f64) -> Four, area: Rectangle, tolerance: f64, budget: usize) -> Integral {
+pub(crate) fn integrate(f: &dyn Fn(f64, f64) -> Integrands, area: Rectangle, tolerance: f64, budget: usize) -> Integral {
     let whole = rule(f, area);
     let mut left = budget as isize;
     let mut sum = Integral::default();
@@ -61,10 +61,10 @@ pub(crate) fn integrate(f: &dyn Fn(f64, f64) -> Four, area: Rectangle, tolerance
 }
 
 /// The value of the rule, and along which variable the integrand is rougher.
-fn rule(f: &dyn Fn(f64, f64) -> Four, area: Rectangle) -> (Four, usize) {
+fn rule(f: &dyn Fn(f64, f64) -> Integrands, area: Rectangle) -> (Integrands, usize) {
     let [center, half] = [0.5, -0.5].map(|s| area.map(|[lo, hi]| s * lo + 0.5 * hi));
     let mut grid = [[0.0; 7]; 7];
-    let mut sum = [0.0; 4];
+    let mut sum = [0.0; 7];
     for (i, row) in grid.iter_mut().enumerate() {
         for (j, total) in row.iter_mut().enumerate() {
             let value = f(center[0] + half[0] * NODES[i], center[1] + half[1] * NODES[j]);
@@ -90,9 +90,9 @@ fn legendre6(x: f64) -> f64 {
 }
 
 fn refine(
-    f: &dyn Fn(f64, f64) -> Four,
+    f: &dyn Fn(f64, f64) -> Integrands,
     area: Rectangle,
-    (whole, axis): (Four, usize),
+    (whole, axis): (Integrands, usize),
     tolerance: f64,
     left: &mut isize,
     sum: &mut Integral,
@@ -104,7 +104,7 @@ fn refine(
     second[axis] = [middle, hi];
     let (a, b) = (rule(f, first), rule(f, second));
     *left -= 98;
-    let halves: Four = std::array::from_fn(|i| a.0[i] + b.0[i]);
+    let halves: Integrands = std::array::from_fn(|i| a.0[i] + b.0[i]);
     let error = halves.iter().zip(whole).fold(0.0_f64, |worst, (h, w)| worst.max((h - w).abs()));
     if error <= tolerance || *left <= 0 || !error.is_finite() {
         sum.add(&Integral { value: halves, error, points: 98 });
@@ -123,7 +123,7 @@ mod tests {
     fn integrates_what_has_a_closed_form() {
         // ∫∫ cos x · e^y, and a peak of width 1e-3: atan in either variable.
         let peak = |x: f64| 1e-3 / (1e-6 + x * x);
-        let f = |x: f64, y: f64| [x.cos() * y.exp(), peak(x - 0.3) * peak(y - 0.6), 1.0, 0.0];
+        let f = |x: f64, y: f64| [x.cos() * y.exp(), peak(x - 0.3) * peak(y - 0.6), 1.0, 0.0, 0.0, 0.0, 0.0];
         let got = integrate(&f, [[0.0, 1.0], [0.0, 1.0]], 1e-10, 1_000_000);
         let line = |c: f64| (c / 1e-3).atan() + ((1.0 - c) / 1e-3).atan();
         assert!((got.value[0] - 1.0_f64.sin() * (1.0_f64.exp() - 1.0)).abs() < 1e-11);

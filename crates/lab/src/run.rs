@@ -1,6 +1,21 @@
 //! `validate_kernel`: every instrument over the whole zoo.
+//!
+//! A run is a list of tasks, one row of the report each. The list is made first, so that the number of statistical tests
+//! is known and they can share one significance. Then threads take tasks from it; each has its own random stream, addressed
+//! by its name, and results are handed on in the order of the list, so neither threads nor order change anything.
 
 use crate::check::{Check, Effort};
+use crate::faults;
+use crate::finding::{Finding, Run};
+use crate::random::seed_for;
+use crate::statistics::sidak;
+use crate::subject::{Subject, View};
+use crate::zoo::{METAL, rows, species};
+use crate::{chi2, consistency, discrete, elementary, frames, furnace, lanes, mitsuba, normalisation, precision, reciprocity};
+use crate::{reference, totality, warps, weight};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::time::Instant;
 
 /// What to run, and how thoroughly.
 #[derive(Clone, Debug)]
@@ -22,10 +37,166 @@ impl Options {
 
 /// The instruments: name, and what it proves in one sentence.
 pub fn instruments() -> &'static [(&'static str, &'static str)] {
-    &[]
+    &[
+        ("furnace", "albedo by quadrature and by sampling agree"),
+        ("energy", "no albedo exceeds 1, and white Lambert and mirror return exactly all light"),
+        ("normalisation", "densities, discrete probabilities and failures add up to 1"),
+        ("chi2", "samples are distributed as the density says, discrete events and failures included"),
+        ("jacobian", "the density is the inverse of the sampler's stretching, point by point"),
+        ("consistency", "what is sampled can be evaluated: unit, on its side, positive density, repeatable"),
+        ("weight", "no sample weighs more than its lobe promises"),
+        ("reciprocity", "light paths may be walked either way"),
+        ("discrete", "a mirror sends all its light where the law of reflection says, and nothing elsewhere"),
+        ("precision", "f32 differs from f64 by no more than its inputs' rounding explains"),
+        ("lanes", "each of eight lanes equals the scalar bit for bit"),
+        ("totality", "finite and non-negative inside the domain without a guard, exactly zero outside with it"),
+        ("reference", "the kernel agrees with an independent textbook implementation"),
+        ("mitsuba", "the kernel agrees with values computed by Mitsuba 3"),
+        ("frames", "local frames are orthonormal, right-handed and faithful to normal and tangent"),
+        ("elementary", "elementary functions keep their stated error"),
+        ("warps", "warps distribute points as their densities say"),
+        ("planted-faults", "each instrument catches the faults that are planted for it"),
+    ]
 }
 
 /// Runs every instrument over the zoo and hands each check to `sink`, in an order that never depends on timing.
 pub fn validate_kernel(options: &Options, sink: &mut dyn FnMut(Check)) {
-    let _ = (options, sink);
+    let rows = rows();
+    let subjects: Vec<Subject> = rows.iter().map(Subject::of_row).collect();
+    let warps = warps::subjects();
+    let mut tasks = Vec::new();
+    for subject in &subjects {
+        tasks.extend(tasks_of_subject(subject));
+    }
+    tasks.extend(kernel_tasks());
+    for subject in &warps {
+        for view in subject.views() {
+            let name = |what| format!("{} {}: {what}", subject.name, view.precision());
+            tasks.push(Task::new("warps", name("χ²"), VIEWS, move |run| chi2::measure(view, run)));
+            tasks.push(Task::new("warps", name("∫pdf"), VIEWS, move |run| normalisation::measure(view, run)));
+            if !view.probe.single() {
+                tasks.push(Task::new("warps", name("jacobian"), 0, move |run| consistency::measure_jacobian(view, run)));
+            }
+        }
+    }
+    tasks.extend(faults::tasks());
+    execute(tasks, options, sink);
+}
+
+/// One row of the report, not yet measured.
+pub(crate) struct Task<'a> {
+    instrument: &'static str,
+    subject: String,
+    /// How many p-values it judges at the level of a single test.
+    tests: usize,
+    measure: Box<dyn Fn(&Run) -> Finding + Send + Sync + 'a>,
+}
+
+impl<'a> Task<'a> {
+    /// A task.
+    pub(crate) fn new(
+        instrument: &'static str,
+        subject: impl Into<String>,
+        tests: usize,
+        measure: impl Fn(&Run) -> Finding + Send + Sync + 'a,
+    ) -> Self {
+        Self { instrument, subject: subject.into(), tests, measure: Box::new(measure) }
+    }
+    fn wanted(&self, only: Option<&str>) -> bool {
+        only.is_none_or(|only| self.instrument == only || self.subject.contains(only))
+    }
+    fn run(&self, options: &Options, level: f64) -> Check {
+        let start = Instant::now();
+        let seed = seed_for(options.seed, &format!("{} {}", self.instrument, self.subject));
+        let finding = (self.measure)(&Run { effort: options.effort, seed, level });
+        finding.into_check(self.instrument, self.subject.clone(), start.elapsed().as_secs_f64())
+    }
+}
+
+/// Tests of the integral instruments: one p-value per view.
+const VIEWS: usize = crate::directions::VIEWS.len();
+
+/// What can be measured of any subject, the user's included.
+pub(crate) fn tasks_of_subject<'a>(subject: &'a Subject) -> Vec<Task<'a>> {
+    let mut tasks = Vec::new();
+    for view in subject.views() {
+        let name = format!("{} {}", subject.name, view.precision());
+        let mut add = |instrument, tests, measure: fn(View, &Run) -> Finding| {
+            tasks.push(Task::new(instrument, name.clone(), tests, move |run| measure(view, run)));
+        };
+        add("furnace", VIEWS, furnace::measure);
+        add("energy", 0, furnace::measure_bound);
+        add("consistency", 0, consistency::measure);
+        add("weight", 0, weight::measure);
+        if view.claims.discrete {
+            add("normalisation", VIEWS, normalisation::measure);
+            if !view.claims.empty {
+                add("discrete", 0, discrete::measure);
+            }
+            continue;
+        }
+        add("normalisation", VIEWS, normalisation::measure);
+        add("chi2", VIEWS, chi2::measure);
+        add("reciprocity", 0, reciprocity::measure);
+        if view.claims.one_to_one && !view.probe.single() {
+            add("jacobian", 0, consistency::measure_jacobian);
+        }
+        if view.probe.single() && !view.reference.single() {
+            add("precision", 0, precision::measure);
+        }
+    }
+    tasks
+}
+
+/// What is measured of the kernel's species and of what lies beneath the lobes.
+fn kernel_tasks() -> Vec<Task<'static>> {
+    let mut tasks = Vec::new();
+    let all: Vec<_> = species().collect();
+    for (i, &one) in all.iter().enumerate() {
+        let other = all[(i + 1) % all.len()];
+        tasks.push(Task::new("lanes", format!("{} with {}", one.name, other.name), 0, |run| lanes::measure_mixture(one, other, run)));
+        tasks.push(Task::new("totality", format!("{} inside its domain", one.name), 0, |run| totality::measure_inside(one, run)));
+        tasks.push(Task::new("totality", format!("{} at special numbers", one.name), 0, |run| totality::measure_special(one, run)));
+        tasks.push(Task::new("reference", one.name, 0, |run| reference::measure(one, run)));
+    }
+    tasks.push(Task::new("lanes", "mathematics, warps, frames, Fresnel", 0, lanes::measure_parts));
+    tasks.push(Task::new("reference", "Fresnel, roughness, photometry", 0, reference::measure_conventions));
+    tasks.push(Task::new("mitsuba", "rough conductor", 0, |run| mitsuba::measure(&METAL, run)));
+    tasks.push(Task::new("mitsuba", "Fresnel", 0, mitsuba::measure_fresnel));
+    tasks.push(Task::new("frames", "from normal and tangent", 0, |run| frames::measure(frames::kernel, run)));
+    tasks.push(Task::new("elementary", "sin_cos_turns f32", 0, |run| elementary::measure(elementary::single, true, run)));
+    tasks.push(Task::new("elementary", "sin_cos_turns f64", 0, |run| elementary::measure(elementary::double, false, run)));
+    tasks.push(Task::new("warps", "uniform triangle f32", 1, |run| warps::measure_triangle(warps::triangle_single, run)));
+    tasks
+}
+
+/// Runs the wanted tasks on all threads and hands on the checks in order.
+pub(crate) fn execute(tasks: Vec<Task>, options: &Options, sink: &mut dyn FnMut(Check)) {
+    let tasks: Vec<Task> = tasks.into_iter().filter(|task| task.wanted(options.only.as_deref())).collect();
+    let level = sidak(tasks.iter().map(|task| task.tests).sum());
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(tasks.len().max(1));
+    let next = AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        let (send, receive) = mpsc::channel();
+        for _ in 0..threads {
+            let (send, next, tasks) = (send.clone(), &next, &tasks);
+            scope.spawn(move || {
+                while let Some((index, task)) = Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|i| Some((i, tasks.get(i)?))) {
+                    if send.send((index, task.run(options, level))).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(send);
+        let mut early: Vec<Option<Check>> = tasks.iter().map(|_| None).collect();
+        let mut done = 0;
+        for (index, check) in receive {
+            early[index] = Some(check);
+            while let Some(check) = early.get_mut(done).and_then(Option::take) {
+                sink(check);
+                done += 1;
+            }
+        }
+    });
 }

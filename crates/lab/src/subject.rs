@@ -1,8 +1,13 @@
-//! `Subject`: a model with its probes and with what is claimed of it.
+//! `Subject`: a model with its probes, with what is claimed of it, and with its integrals at the four views.
 
-use crate::probe::{LobeProbe, Probe, SurfaceProbe};
+use crate::cells::Cells;
+use crate::directions::VIEWS;
+use crate::probe::{Dir, LobeProbe, Probe, SurfaceProbe, demote, promote};
+use crate::quadrature::Integral;
+use crate::random::{Random, direction, seed_for};
 use crate::zoo::Row;
 use gonio_kernel::Lobe;
+use std::sync::OnceLock;
 
 /// What is claimed of a model, beyond the laws that hold for all.
 #[derive(Clone, Copy, Debug, Default)]
@@ -31,9 +36,33 @@ pub(crate) struct Subject<'a> {
     pub(crate) double: Option<Box<dyn Probe + 'a>>,
     /// What is claimed of it.
     pub(crate) claims: Claims,
+    /// Cells and integrals at each view: made by the first instrument that asks, the same for all of them.
+    prepared: [OnceLock<Prepared>; VIEWS.len()],
+}
+
+/// A view with the cells that follow the model there and the integrals over them.
+#[derive(Debug)]
+pub(crate) struct Prepared {
+    /// The view in words.
+    pub(crate) name: String,
+    /// Its direction: exact in `f32`, so that both precisions are measured at the same place.
+    pub(crate) wo: Dir,
+    /// The cells.
+    pub(crate) cells: Cells,
+    /// The integrals over each.
+    pub(crate) integrals: Vec<Integral>,
+    /// Their sum.
+    pub(crate) total: Integral,
 }
 
 impl<'a> Subject<'a> {
+    /// A probe of either precision that is its own reference.
+    pub(crate) fn of_probe(name: &str, probe: impl Probe + 'a, claims: Claims) -> Self {
+        let (single, double): (Option<Box<dyn Probe + 'a>>, Option<Box<dyn Probe + 'a>>) =
+            if probe.single() { (Some(Box::new(probe)), None) } else { (None, Some(Box::new(probe))) };
+        Self { name: name.to_owned(), single, double, claims, prepared: Default::default() }
+    }
+
     /// A row of the zoo.
     pub(crate) fn of_row(row: &Row) -> Self {
         let claims = Claims {
@@ -49,13 +78,13 @@ impl<'a> Subject<'a> {
             single: Some(Box::new(SurfaceProbe::new(row.single(), Some(row.lanes())))),
             double: Some(Box::new(SurfaceProbe::new(row.double(), None))),
             claims,
+            prepared: Default::default(),
         }
     }
 
     /// A user's lobe in `f32`.
     pub(crate) fn of_lobe<L: Lobe<f32> + Sync>(name: &str, lobe: &'a L) -> Self {
-        let single: Box<dyn Probe + 'a> = Box::new(LobeProbe::<f32, L>::new(lobe));
-        Self { name: name.to_owned(), single: Some(single), double: None, claims: Claims::default() }
+        Self::of_probe(name, LobeProbe::<f32, L>::new(lobe), Claims::default())
     }
 
     /// The subject in each precision that it has.
@@ -64,6 +93,7 @@ impl<'a> Subject<'a> {
             probe: probe.as_ref(),
             reference: self.double.as_deref().unwrap_or(probe.as_ref()),
             claims: self.claims,
+            prepared: &self.prepared,
         })
     }
 }
@@ -77,12 +107,24 @@ pub(crate) struct View<'a> {
     pub(crate) reference: &'a dyn Probe,
     /// What is claimed of it.
     pub(crate) claims: Claims,
+    prepared: &'a [OnceLock<Prepared>; VIEWS.len()],
 }
 
 impl<'a> View<'a> {
-    /// One probe that is its own reference.
-    pub(crate) fn alone(probe: &'a dyn Probe, claims: Claims) -> Self {
-        Self { probe, reference: probe, claims }
+    /// The four views, with cells and integrals of the reference.
+    pub(crate) fn prepared(&self) -> impl Iterator<Item = &'a Prepared> {
+        let reference = self.reference;
+        VIEWS.iter().zip(self.prepared).map(move |(&(cos, phi), slot)| {
+            slot.get_or_init(|| {
+                let wo = promote(demote(direction(cos, phi)));
+                let name = format!("wo at {:.0}°, azimuth {:.0}°", cos.acos().to_degrees(), phi.to_degrees());
+                // The pilot only places borders, so it may be the same in every run.
+                let cells = Cells::following(reference, wo, &mut Random::new(seed_for(0, &name)));
+                let integrals = cells.integrate(reference, wo);
+                let total = Cells::total(&integrals);
+                Prepared { name, wo, cells, integrals, total }
+            })
+        })
     }
     /// The precision as a suffix of a name.
     pub(crate) fn precision(&self) -> &'static str {

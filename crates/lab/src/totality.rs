@@ -13,7 +13,7 @@ use crate::probe::{Kind, Probe, demote, lane_value};
 use crate::random::Random;
 use crate::subject::View;
 use crate::zoo::{Parameter, Species};
-use gonio_kernel::{Closure, F32x8, Real, Surface, Vec3, closure::Unguarded};
+use gonio_kernel::{Closure, F32x8, Surface, Vec3, closure::Unguarded};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Numbers at which floating-point code goes wrong: zeros, denormals, the borders of overflow, infinities, NaN.
@@ -121,7 +121,8 @@ fn pair(random: &mut Random) -> (Vec3<f32>, Vec3<f32>) {
             // Mirror images at grazing: the half vector is (0, 0, 2z).
             let phi = random.between(0.0, std::f64::consts::TAU);
             wo = Vec3::new(phi.cos() as f32, phi.sin() as f32, random.pick(&TINY));
-            wi = Vec3::new(-wo.x, -wo.y, random.pick(&[wo.z, random.pick(&TINY)]));
+            let other = random.pick(&TINY);
+            wi = Vec3::new(-wo.x, -wo.y, random.pick(&[wo.z, other]));
         }
         3 => wi = Vec3::new(-wo.x, -wo.y, wo.z),
         4 => wi = wo,

@@ -11,7 +11,6 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use ::exr::meta::attribute::Chromaticities;
 use ::exr::prelude::{self as exr, ReadChannels, ReadLayers, WritableImage};
 
-
 /// A picture in linear Rec. 709, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {

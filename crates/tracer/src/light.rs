@@ -65,19 +65,27 @@ impl Lights {
     /// Eight emitters for two random words each.
     #[inline(always)]
     pub(crate) fn pick(&self, place: U32x8, toss: F32x8) -> Emitters {
-        let (place, toss) = (place.to_array(), toss.to_array());
-        let chosen: [&Emitter; F32x8::LANES] = std::array::from_fn(|lane| {
+        let chosen = U32x8::from_fn(|lane| {
             // A 32-bit word times the count: every emitter gets its share to 2⁻³² of the whole.
-            let slot = ((u64::from(place[lane]) * self.alias.len() as u64) >> 32) as usize;
-            let (keep, other) = self.alias[slot];
-            &self.emitters[if toss[lane] < keep { slot } else { other as usize }]
+            let slot = ((u64::from(place.lane(lane)) * self.alias.len() as u64) >> 32) as u32;
+            let (keep, other) = self.alias[slot as usize];
+            if toss.lane(lane) < keep { slot } else { other }
         });
-        let real = |f: &dyn Fn(&Emitter) -> f32| F32x8::new(chosen.map(f));
+        let emitter = |lane: usize| -> &Emitter { &self.emitters[chosen.lane(lane) as usize] };
+        let corner = |c: usize| {
+            Vec3::new(
+                F32x8::from_fn(|l| emitter(l).corners[c].x),
+                F32x8::from_fn(|l| emitter(l).corners[c].y),
+                F32x8::from_fn(|l| emitter(l).corners[c].z),
+            )
+        };
         Emitters {
-            corners: [0, 1, 2].map(|c| {
-                Vec3::new(real(&|e| e.corners[c].x), real(&|e| e.corners[c].y), real(&|e| e.corners[c].z))
-            }),
-            radiance: Rgb::new(real(&|e| e.radiance.r), real(&|e| e.radiance.g), real(&|e| e.radiance.b)),
+            corners: [corner(0), corner(1), corner(2)],
+            radiance: Rgb::new(
+                F32x8::from_fn(|l| emitter(l).radiance.r),
+                F32x8::from_fn(|l| emitter(l).radiance.g),
+                F32x8::from_fn(|l| emitter(l).radiance.b),
+            ),
         }
     }
 }

@@ -2,9 +2,8 @@
 
 use crate::plan::Plan;
 use crate::queue::Batch;
-use crate::world::{Triangle, World};
-use gonio_accel::Hit8;
-use gonio_kernel::{F32x8, Frame, Mask, Mask8, Real, Vec3};
+use crate::world::World;
+use gonio_kernel::{F32x8, Frame, Mask, Mask8, Real, Vec3, each_lane};
 
 /// Error bound of a position formed from barycentrics, in units of the sum of its absolute terms: two roundings for the
 /// weight of the first corner, three for products and sums, one for adding the offset, and room for the offset's own.
@@ -58,18 +57,22 @@ pub(crate) struct ShadingPoints {
 impl ShadingPoints {
     /// Looks up the hits of a batch; wo points back along the rays.
     #[inline(always)]
-    pub(crate) fn new(world: &World, plan: Plan, batch: &Batch, hits: &[Hit8], wo: Vec3<F32x8>) -> Self {
-        let bary = [0, 1].map(|i| batch.gather(hits, |h| &h.bary[i]));
-        let t = batch.gather(hits, |h| &h.t);
-        let prim = batch.gather_int(hits, |h| &h.prim);
-        let instance = batch.gather_int(hits, |h| &h.instance);
-        let index: [usize; F32x8::LANES] = std::array::from_fn(|l| world.triangle_index(instance[l], prim[l]));
-        let triangles: [&Triangle; F32x8::LANES] = index.map(|i| &world.triangles[i]);
-
-        let real = |f: &dyn Fn(&Triangle) -> f32| F32x8::new(triangles.map(f));
-        let corners = [0, 1, 2].map(|c| {
-            Vec3::new(real(&|t| t.corners[c].x), real(&|t| t.corners[c].y), real(&|t| t.corners[c].z))
+    pub(crate) fn new(world: &World, plan: Plan, batch: &Batch, wo: Vec3<F32x8>) -> Self {
+        let bary = [batch.hit(|h| &h.bary[0]), batch.hit(|h| &h.bary[1])];
+        let t = batch.hit(|h| &h.t);
+        let index = each_lane(|l| {
+            let (instance, prim) = batch.hit_place(l);
+            world.triangle_index(instance, prim)
         });
+        let triangles = each_lane(|l| &world.triangles[index[l]]);
+        let corner = |c: usize| {
+            Vec3::new(
+                F32x8::from_fn(|l| triangles[l].corners[c].x),
+                F32x8::from_fn(|l| triangles[l].corners[c].y),
+                F32x8::from_fn(|l| triangles[l].corners[c].z),
+            )
+        };
+        let corners = [corner(0), corner(1), corner(2)];
         let (e1, e2) = (corners[1] - corners[0], corners[2] - corners[0]);
         let winding = e1.cross(e2).normalize_or(wo); // a triangle too small for its normal faces the viewer
         let cos = winding.dot(wo);
@@ -79,13 +82,17 @@ impl ShadingPoints {
 
         let mut shading = normal;
         if plan.smooth_normals {
-            let corner = |c: usize| {
-                let n: [Vec3<f32>; F32x8::LANES] =
-                    index.map(|i| world.normals.get(i).map_or(Vec3::new(0.0, 0.0, 0.0), |n| n[c]));
-                Vec3::new(F32x8::new(n.map(|n| n.x)), F32x8::new(n.map(|n| n.y)), F32x8::new(n.map(|n| n.z)))
+            let flat = [Vec3::new(0.0, 0.0, 0.0); 3];
+            let normals = each_lane(|l| world.normals.get(index[l]).unwrap_or(&flat));
+            let at = |c: usize| {
+                Vec3::new(
+                    F32x8::from_fn(|l| normals[l][c].x),
+                    F32x8::from_fn(|l| normals[l][c].y),
+                    F32x8::from_fn(|l| normals[l][c].z),
+                )
             };
             let b0 = F32x8::ONE - bary[0] - bary[1];
-            let n = ((corner(0) * b0).along(bary[0], corner(1)).along(bary[1], corner(2)) * side).normalize_or(normal);
+            let n = ((at(0) * b0).along(bary[0], at(1)).along(bary[1], at(2)) * side).normalize_or(normal);
             // A shading normal that does not face the viewer, or that leans behind the surface, is of no use.
             let usable = n.dot(wo).gt(F32x8::ZERO) & n.dot(normal).gt(F32x8::ZERO);
             shading = Vec3::select(usable, n, normal);
@@ -94,8 +101,9 @@ impl ShadingPoints {
         let mut uv = [F32x8::ZERO; 2];
         let mut frame = Frame::from_normal(shading);
         if (plan.textures || plan.tangents) && !world.uvs.is_empty() {
-            let at = |c: usize, k: usize| F32x8::new(index.map(|i| world.uvs[i][c][k]));
-            let [u, v] = [0, 1].map(|k| [at(0, k), at(1, k), at(2, k)]);
+            let uvs = each_lane(|l| &world.uvs[index[l]]);
+            let at = |c: usize, k: usize| F32x8::from_fn(|l| uvs[l][c][k]);
+            let [u, v] = [[at(0, 0), at(1, 0), at(2, 0)], [at(0, 1), at(1, 1), at(2, 1)]];
             let b0 = F32x8::ONE - bary[0] - bary[1];
             let blend = |x: [F32x8; 3]| b0.mul_add(x[0], bary[0].mul_add(x[1], bary[1] * x[2]));
             uv = [blend(u), blend(v)];
@@ -117,7 +125,7 @@ impl ShadingPoints {
                 };
             }
         }
-        let material = triangles.map(|t| t.material);
+        let material = each_lane(|l| triangles[l].material);
         Self { point: SurfacePoint::new(&corners, bary), normal, frame, front, cos_geometric: cos.abs(), t, uv, material }
     }
 }

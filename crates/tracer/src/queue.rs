@@ -5,7 +5,7 @@
 //! new blocks in that order. Dead lanes are left behind by the next sort.
 
 use gonio_accel::{Hit8, NO_HIT, Ray8};
-use gonio_kernel::{F32x8, Mask8, Rgb, U32x8};
+use gonio_kernel::{F32x8, Mask8, Rgb, U32x8, each_lane};
 
 /// What eight paths carry besides their rays.
 #[derive(Clone, Copy, Debug)]
@@ -117,28 +117,57 @@ impl Order {
 
 /// Eight lanes scattered over a queue. In a batch that is not full, the rest repeats its last lane and is not live.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Batch {
-    pub(crate) lanes: [u32; F32x8::LANES],
+pub(crate) struct Batch<'a> {
+    rays: [&'a Ray8; F32x8::LANES],
+    paths: [&'a Paths; F32x8::LANES],
+    hits: [&'a Hit8; F32x8::LANES],
+    lane: [usize; F32x8::LANES],
     pub(crate) live: Mask8,
 }
 
-impl Batch {
-    /// One to eight lanes.
-    pub(crate) fn new(lanes: &[u32]) -> Self {
+impl<'a> Batch<'a> {
+    /// One to eight lanes of a queue and its hits.
+    #[inline(always)]
+    pub(crate) fn new(lanes: &[u32], queue: &'a Queue, hits: &'a [Hit8]) -> Self {
         let last = lanes.len().saturating_sub(1);
-        Self { lanes: std::array::from_fn(|i| lanes[i.min(last)]), live: Mask8::first(lanes.len()) }
+        let place = each_lane(|i| lanes[i.min(last)] as usize);
+        Self {
+            rays: each_lane(|i| &queue.rays[place[i] / F32x8::LANES]),
+            paths: each_lane(|i| &queue.paths[place[i] / F32x8::LANES]),
+            hits: each_lane(|i| &hits[place[i] / F32x8::LANES]),
+            lane: each_lane(|i| place[i] % F32x8::LANES),
+            live: Mask8::first(lanes.len()),
+        }
     }
 
-    /// A field of each lane's block, brought together.
+    /// A field of the rays, brought together.
     #[inline(always)]
-    pub(crate) fn gather<B>(&self, blocks: &[B], field: impl Fn(&B) -> &F32x8) -> F32x8 {
-        F32x8::new(self.lanes.map(|l| field(&blocks[l as usize / F32x8::LANES]).to_array()[l as usize % F32x8::LANES]))
+    pub(crate) fn ray(&self, field: impl Fn(&Ray8) -> &F32x8) -> F32x8 {
+        F32x8::from_fn(|i| field(self.rays[i]).lane(self.lane[i]))
     }
 
-    /// An integer field of each lane's block, brought together.
+    /// A field of the path states, brought together.
     #[inline(always)]
-    pub(crate) fn gather_int<B>(&self, blocks: &[B], field: impl Fn(&B) -> &U32x8) -> [u32; F32x8::LANES] {
-        self.lanes.map(|l| field(&blocks[l as usize / F32x8::LANES]).to_array()[l as usize % F32x8::LANES])
+    pub(crate) fn path(&self, field: impl Fn(&Paths) -> &F32x8) -> F32x8 {
+        F32x8::from_fn(|i| field(self.paths[i]).lane(self.lane[i]))
+    }
+
+    /// Which paths of the tile these are.
+    #[inline(always)]
+    pub(crate) fn path_numbers(&self) -> [u32; F32x8::LANES] {
+        each_lane(|i| self.paths[i].path.lane(self.lane[i]))
+    }
+
+    /// A field of the hits, brought together.
+    #[inline(always)]
+    pub(crate) fn hit(&self, field: impl Fn(&Hit8) -> &F32x8) -> F32x8 {
+        F32x8::from_fn(|i| field(self.hits[i]).lane(self.lane[i]))
+    }
+
+    /// Instance and prim of one hit.
+    #[inline(always)]
+    pub(crate) fn hit_place(&self, i: usize) -> (u32, u32) {
+        (self.hits[i].instance.lane(self.lane[i]), self.hits[i].prim.lane(self.lane[i]))
     }
 }
 

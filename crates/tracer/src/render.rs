@@ -237,9 +237,9 @@ impl TileWorker {
         let two = F32x8::splat(2.0);
         for start in (0..self.pixel.len()).step_by(F32x8::LANES) {
             let lanes = (self.pixel.len() - start).min(F32x8::LANES);
-            let path: [u32; F32x8::LANES] = std::array::from_fn(|l| (start + l.min(lanes - 1)) as u32);
-            let pixel = U32x8::new(path.map(|p| self.pixel[p as usize]));
-            let sample = U32x8::new(path.map(|p| self.sample[p as usize]));
+            let path = U32x8::from_fn(|l| (start + l.min(lanes - 1)) as u32);
+            let pixel = U32x8::from_fn(|l| self.pixel[path.lane(l) as usize]);
+            let sample = U32x8::from_fn(|l| self.sample[path.lane(l) as usize]);
             let u = ctx.sampler.draw(pixel, sample, 0, Purpose::Camera);
             let x = ((pixel & U32x8::splat(0xffff)).to_real() + u.unit(0)) * two / width - F32x8::ONE;
             let y = F32x8::ONE - ((pixel >> 16).to_real() + u.unit(1)) * two / height;
@@ -250,7 +250,7 @@ impl TileWorker {
                     throughput: Rgb::splat(F32x8::ONE),
                     pdf: F32x8::ZERO,
                     pdf_environment: F32x8::ZERO,
-                    path: U32x8::new(path),
+                    path,
                 },
             );
         }
@@ -275,7 +275,7 @@ impl TileWorker {
             let mut tile = Tile { pixel: &self.pixel, sample: &self.sample, radiance: &mut self.radiance };
             if ctx.plan.environment {
                 for lanes in self.order.range(0, 1).chunks(F32x8::LANES) {
-                    shade::miss(ctx, &Batch::new(lanes), &self.queue, &mut tile);
+                    shade::miss(ctx, &Batch::new(lanes, &self.queue, &self.hits), &mut tile);
                 }
             }
             let mut from = 0;
@@ -283,10 +283,8 @@ impl TileWorker {
                 let variant = materials[from].variant;
                 let to = from + materials[from..].iter().take_while(|m| m.variant == variant).count();
                 for lanes in self.order.range(1 + from, 1 + to).chunks(F32x8::LANES) {
-                    let found = (&self.queue, &self.hits[..]);
-                    let batch = Batch::new(lanes);
-                    let used =
-                        shade::hit(ctx, depth, &batch, found, &mut tile, &mut self.shadow, &mut self.next);
+                    let batch = Batch::new(lanes, &self.queue, &self.hits);
+                    let used = shade::hit(ctx, depth, &batch, &mut tile, &mut self.shadow, &mut self.next);
                     stats.closure_lanes += u64::from(used);
                     stats.closure_calls += u64::from(used > 0);
                 }

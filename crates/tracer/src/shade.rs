@@ -11,9 +11,9 @@ use crate::point::{ShadingPoints, SurfacePoint};
 use crate::queue::{Batch, Paths, Queue, ShadowQueue};
 use crate::sampler::{Purpose, Random4, Sampler};
 use crate::world::{World, splat_rgb};
-use gonio_accel::{Hit8, Ray8};
+use gonio_accel::Ray8;
 use gonio_kernel::warp::{pdf_cosine_hemisphere, sample_cosine_hemisphere, sample_uniform_triangle};
-use gonio_kernel::{Closure, F32x8, Mask, Mask8, Real, Rgb, U32x8, Vec3};
+use gonio_kernel::{Closure, F32x8, Mask, Mask8, Real, Rgb, U32x8, Vec3, each_lane};
 
 /// Shadow rays stop this much short of the light, relative to its distance: the rounding of the distance and of t.
 const SHORT_OF_LIGHT: f32 = 1.0 - 16.0 / 16_777_216.0;
@@ -57,8 +57,8 @@ impl Tile<'_> {
 
     #[inline(always)]
     fn random(&self, ctx: &Context, path: [u32; F32x8::LANES], bounce: u32, purpose: Purpose) -> Random4 {
-        let pixel = U32x8::new(path.map(|p| self.pixel[p as usize]));
-        let sample = U32x8::new(path.map(|p| self.sample[p as usize]));
+        let pixel = U32x8::from_fn(|l| self.pixel[path[l] as usize]);
+        let sample = U32x8::from_fn(|l| self.sample[path[l] as usize]);
         ctx.sampler.draw(pixel, sample, bounce, purpose)
     }
 }
@@ -73,21 +73,16 @@ struct Incoming {
 
 impl Incoming {
     #[inline(always)]
-    fn new(batch: &Batch, queue: &Queue) -> Self {
-        let (rays, paths) = (&queue.rays, &queue.paths);
+    fn new(batch: &Batch) -> Self {
         Self {
-            dir: Vec3::new(
-                batch.gather(rays, |r| &r.dir.x),
-                batch.gather(rays, |r| &r.dir.y),
-                batch.gather(rays, |r| &r.dir.z),
-            ),
+            dir: Vec3::new(batch.ray(|r| &r.dir.x), batch.ray(|r| &r.dir.y), batch.ray(|r| &r.dir.z)),
             throughput: Rgb::new(
-                batch.gather(paths, |p| &p.throughput.r),
-                batch.gather(paths, |p| &p.throughput.g),
-                batch.gather(paths, |p| &p.throughput.b),
+                batch.path(|p| &p.throughput.r),
+                batch.path(|p| &p.throughput.g),
+                batch.path(|p| &p.throughput.b),
             ),
-            pdf: batch.gather(paths, |p| &p.pdf),
-            path: batch.gather_int(paths, |p| &p.path),
+            pdf: batch.path(|p| &p.pdf),
+            path: batch.path_numbers(),
         }
     }
 
@@ -100,9 +95,9 @@ impl Incoming {
 
 /// Paths that left the world receive the environment.
 #[inline(always)]
-pub(crate) fn miss(ctx: &Context, batch: &Batch, queue: &Queue, tile: &mut Tile) {
-    let incoming = Incoming::new(batch, queue);
-    let weight = incoming.weight(batch.gather(&queue.paths, |p| &p.pdf_environment));
+pub(crate) fn miss(ctx: &Context, batch: &Batch, tile: &mut Tile) {
+    let incoming = Incoming::new(batch);
+    let weight = incoming.weight(batch.path(|p| &p.pdf_environment));
     let radiance = splat_rgb(ctx.world.lights.environment());
     tile.gather(incoming.path, batch.live, incoming.throughput * radiance * weight);
 }
@@ -114,14 +109,13 @@ pub(crate) fn hit(
     ctx: &Context,
     depth: u32,
     batch: &Batch,
-    (queue, hits): (&Queue, &[Hit8]),
     tile: &mut Tile,
     shadow: &mut ShadowQueue,
     next: &mut Queue,
 ) -> u32 {
-    let incoming = Incoming::new(batch, queue);
+    let incoming = Incoming::new(batch);
     let wo = -incoming.dir;
-    let points = ShadingPoints::new(ctx.world, ctx.plan, batch, hits, wo);
+    let points = ShadingPoints::new(ctx.world, ctx.plan, batch, wo);
     if ctx.plan.area_lights {
         receive_emission(ctx, batch, &incoming, &points, tile);
     }
@@ -140,7 +134,7 @@ pub(crate) fn hit(
         return 0;
     }
 
-    let materials = points.material.map(|m| &ctx.world.materials[m as usize]);
+    let materials = each_lane(|l| &ctx.world.materials[points.material[l] as usize]);
     let alike = points.material.iter().all(|&m| m == points.material[0]);
     let looked_up;
     let surface = match &materials[0].surface {
@@ -191,13 +185,15 @@ pub(crate) fn hit(
 /// Light that a hit triangle emits towards the path, from the front of its winding.
 #[inline(always)]
 fn receive_emission(ctx: &Context, batch: &Batch, incoming: &Incoming, points: &ShadingPoints, tile: &mut Tile) {
-    let materials = points.material.map(|m| &ctx.world.materials[m as usize]);
+    let materials = each_lane(|l| &ctx.world.materials[points.material[l] as usize]);
     if !materials.iter().any(|m| m.emits()) {
         return;
     }
-    let rgb = materials.map(|m| m.emission);
-    let emission =
-        Rgb::new(F32x8::new(rgb.map(|c| c.r)), F32x8::new(rgb.map(|c| c.g)), F32x8::new(rgb.map(|c| c.b)));
+    let emission = Rgb::new(
+        F32x8::from_fn(|l| materials[l].emission.r),
+        F32x8::from_fn(|l| materials[l].emission.g),
+        F32x8::from_fn(|l| materials[l].emission.b),
+    );
     let pdf_area = emission.luminance() * F32x8::splat(ctx.world.lights.pdf_area_per_luminance());
     let pdf_light = pdf_area * points.t * points.t / points.cos_geometric;
     let mask = batch.live & points.front & emission.largest().gt(F32x8::ZERO);

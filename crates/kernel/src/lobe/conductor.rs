@@ -60,3 +60,37 @@ impl<R: Real> Lobe<R> for Conductor<R> {
         self.ggx.domain() & self.fresnel.domain()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Random;
+
+    #[test]
+    fn no_sample_of_a_rough_conductor_weighs_more_than_its_fresnel_reflectance() {
+        let mut random = Random(3);
+        for alpha in [1e-3_f32, 0.1, 1.0] {
+            let ggx = Ggx { alpha_x: alpha, alpha_y: 0.5 * alpha };
+            let white = Conductor::new(ggx, Fresnel::Schlick { f0: Rgb::splat(1.0) });
+            for _ in 0..1000 {
+                let wo = random.above();
+                let sample = white.sample(wo, [random.unit(), random.unit(), random.unit()]);
+                let value = white.eval(wo, sample.wi);
+                assert!(sample.event.failed || value.f_cos.r <= value.pdf * (1.0 + 1e-5), "{alpha}: {wo:?} {value:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn light_takes_the_same_way_back() {
+        let mut random = Random(4);
+        let ggx = Ggx { alpha_x: 0.4_f32, alpha_y: 0.1 };
+        let copper = Fresnel::Conductor { eta: Rgb::new(0.22, 0.96, 1.17), k: Rgb::new(3.68, 2.59, 2.46) };
+        let conductor = Conductor::new(ggx, copper);
+        for _ in 0..1000 {
+            let (a, b) = (random.above(), random.above());
+            let (there, back) = (conductor.eval(a, b).f_cos.g * a.z, conductor.eval(b, a).f_cos.g * b.z);
+            assert!((there - back).abs() <= 1e-6 * there, "{a:?} {b:?}: {there} and {back}");
+        }
+    }
+}

@@ -47,3 +47,21 @@ impl<R: Real> Lobe<R> for Lambert<R> {
         self.albedo.within(0.0, 1.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Random, close};
+
+    #[test]
+    fn every_sample_of_a_diffuse_surface_weighs_its_albedo() {
+        let mut random = Random(2);
+        let lambert = Lambert::new(Rgb::new(0.8_f32, 0.5, 0.0));
+        for _ in 0..100 {
+            let wo = random.above();
+            let wi = lambert.sample(wo, [random.unit(), random.unit(), random.unit()]).wi;
+            let value = lambert.eval(wo, wi);
+            assert!(close((value.f_cos.r / value.pdf).into(), 0.8, 1e-6) && value.f_cos.b == 0.0);
+        }
+    }
+}

@@ -51,3 +51,32 @@ impl<R: Real> Lobe<R> for Mirror<R> {
         self.reflectance.within(0.0, 1.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Random;
+
+    #[test]
+    fn light_leaves_a_mirror_along_2n_times_n_dot_w_minus_w() {
+        let mut random = Random(1);
+        let (mirror, n) = (Mirror::new(Rgb::new(0.9_f32, 0.5, 0.1)), Vec3::unit_z());
+        for _ in 0..100 {
+            let w = random.above();
+            let sample = mirror.sample(w, [0.0; 3]);
+            assert_eq!(sample.wi, n * (2.0 * n.dot(w)) - w);
+            let worth = mirror.discrete(w, &sample.event);
+            assert_eq!((worth.f_cos, worth.pdf), (mirror.reflectance, 1.0));
+            assert_eq!(mirror.eval(w, sample.wi).pdf, 0.0);
+        }
+    }
+
+    #[test]
+    fn from_below_a_mirror_is_black() {
+        let mirror = Mirror::new(Rgb::splat(1.0_f32));
+        let below = Vec3::new(0.6, 0.0, -0.8);
+        let sample = mirror.sample(below, [0.0; 3]);
+        assert!(sample.event.failed);
+        assert_eq!(mirror.discrete(below, &sample.event).pdf, 0.0);
+    }
+}

@@ -80,3 +80,57 @@ impl<R: Real> Ggx<R> {
 /// The smallest width that `validate` tests in `f32`: below it the `f32` lattice of directions is coarser than the lobe,
 /// and a mirror is the better model.
 const ALPHA_MIN: f64 = 0.999_999e-4; // a hair below 1e-4, so that 1e-4 rounded to f32 is inside
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Random, close};
+    use core::f64::consts::{FRAC_PI_2, PI, TAU};
+
+    #[test]
+    fn along_the_normal_d_is_one_over_pi_alpha_x_alpha_y() {
+        for (alpha_x, alpha_y) in [(1.0_f64, 1.0), (0.5, 0.1), (1e-3, 1e-2)] {
+            let d = Ggx { alpha_x, alpha_y }.d(Vec3::unit_z() * 1.7, 1.7 * 1.7);
+            assert!(close(d * PI * alpha_x * alpha_y, 1.0, 1e-14));
+        }
+    }
+
+    #[test]
+    fn the_facets_together_project_onto_the_whole_surface() {
+        // ∫ D cosθ dω = 1, by midpoints in tan θ = tan ψ, which d ψ spreads evenly enough for these widths.
+        for (alpha_x, alpha_y) in [(1.0, 1.0), (0.5, 0.2), (0.3, 0.9)] {
+            let ggx = Ggx { alpha_x, alpha_y };
+            let (rows, columns) = (1000, 400);
+            let mut sum = 0.0;
+            for row in 0..rows {
+                let (sin, cos) = ((f64::from(row) + 0.5) / f64::from(rows) * FRAC_PI_2).sin_cos();
+                for column in 0..columns {
+                    let (sin_phi, cos_phi) = ((f64::from(column) + 0.5) / f64::from(columns) * TAU).sin_cos();
+                    sum += ggx.d(Vec3::new(sin * cos_phi, sin * sin_phi, cos), 1.0) * cos * sin;
+                }
+            }
+            let integral = sum * FRAC_PI_2 / f64::from(rows) * TAU / f64::from(columns);
+            assert!(close(integral, 1.0, 1e-5), "{alpha_x}, {alpha_y}: {integral}");
+        }
+    }
+
+    #[test]
+    fn a_smooth_view_along_the_normal_stretches_to_its_own_length() {
+        let ggx = Ggx { alpha_x: 0.3_f64, alpha_y: 0.7 };
+        assert_eq!(ggx.stretched_length(Vec3::unit_z()), 1.0);
+        assert!(close(ggx.stretched_length(Vec3::new(1.0, 0.0, 0.0)), 0.3, 1e-15));
+    }
+
+    #[test]
+    fn a_visible_normal_is_a_unit_vector_above_the_surface_that_faces_the_viewer() {
+        let mut random = Random(5);
+        for alpha in [1e-4_f32, 0.1, 1.0] {
+            let ggx = Ggx { alpha_x: alpha, alpha_y: 1.0 };
+            for _ in 0..1000 {
+                let wo = random.above();
+                let m = ggx.sample_visible(wo, [random.unit(), random.unit()]);
+                assert!(close(m.length().into(), 1.0, 1e-6) && m.z >= 0.0 && m.dot(wo) >= -1e-6, "{wo:?} {m:?}");
+            }
+        }
+    }
+}

@@ -10,7 +10,8 @@ use super::mtl::Library;
 use super::obj::{self, ObjFile};
 use super::textures::Textures;
 use super::{
-    Camera, Color, FilmSettings, Instance, IntegratorSettings, LobeSpec, Material, Mesh, Model, Scene, SceneError, paths,
+    Camera, Color, FilmSettings, Instance, IntegratorSettings, LobeSpec, Material, Mesh, Model, Scene, SceneError,
+    paths,
 };
 
 /// Largest number of materials: an index fits sixteen bits.
@@ -170,7 +171,7 @@ impl Builder {
             let chosen = wanted.all.or(rename).or_else(|| name.and_then(|name| self.defined(name)));
             slots[slot] = match (chosen, named) {
                 (Some(material), _) => material,
-                (None, Some((name, line))) => self.from_library(path, object, &name, line)?,
+                (None, Some((name, line))) => self.library_material(path, object, &name, line)?,
                 (None, None) => {
                     self.warn(format!("{}: faces without a material are drawn in grey", path.display()));
                     self.grey()?
@@ -180,7 +181,7 @@ impl Builder {
         Ok(slots)
     }
 
-    fn from_library(&mut self, path: &Path, object: &mut Object, name: &str, line: u32) -> Result<u32, Refused> {
+    fn library_material(&mut self, path: &Path, object: &mut Object, name: &str, line: u32) -> Result<u32, Refused> {
         let libraries = match &object.libraries {
             Some(libraries) => libraries,
             None => object.libraries.insert(self.open_libraries(path, &object.file)?),

@@ -32,7 +32,8 @@ impl CameraSpec {
         let vfov = self.vfov.unwrap_or(VFOV);
         let target = self.target.unwrap_or((bounds[0] + bounds[1]) * 0.5);
         let origin = self.origin.unwrap_or_else(|| framing(target, up, vfov, bounds, aspect));
-        let view = (target - origin).try_normalize().ok_or("\"origin\" and \"target\" of the camera are the same point")?;
+        let view =
+            (target - origin).try_normalize().ok_or("\"origin\" and \"target\" of the camera are the same point")?;
         let sideways = view.cross(up.try_normalize().ok_or("\"up\" of the camera has no length")?);
         if sideways.length() < 1e-6 {
             return Err("\"up\" of the camera is parallel to the view direction".to_owned());

@@ -25,9 +25,8 @@ impl<'d> Document<'d> {
     /// # Errors
     /// What `toml` says about the syntax, with the line.
     pub(super) fn parse(&self) -> Result<Spanned<DeTable<'d>>, SceneError> {
-        DeTable::parse(self.text).map_err(|error| {
-            self.error(error.span().map_or(0, |span| span.start), error.message().replace('\n', ", "))
-        })
+        DeTable::parse(self.text)
+            .map_err(|error| self.error(error.span().map_or(0, |span| span.start), error.message().replace('\n', ", ")))
     }
 
     /// An error at a byte of the text.
@@ -62,7 +61,8 @@ impl<'d> Table<'d> {
     /// All entries in the order of the file, for tables whose keys are names.
     pub(super) fn entries(&self) -> Vec<(&'d str, usize, Value<'d>)> {
         let value = |name: &str, item| Value { document: self.document, name: name.to_owned(), item };
-        let mut all: Vec<_> = self.entries.iter().map(|(key, item)| (&**key.get_ref(), key.span().start, item)).collect();
+        let mut all: Vec<_> =
+            self.entries.iter().map(|(key, item)| (&**key.get_ref(), key.span().start, item)).collect();
         all.sort_by_key(|&(_, start, _)| start);
         all.into_iter().map(|(name, start, item)| (name, start, value(name, item))).collect()
     }

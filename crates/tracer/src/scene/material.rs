@@ -31,11 +31,7 @@ impl Material {
 }
 
 /// Reads one material; without `textures`, images are refused.
-pub(super) fn read(
-    name: &str,
-    table: &Table<'_>,
-    mut textures: Option<&mut Textures>,
-) -> Result<Material, SceneError> {
+pub(super) fn read(name: &str, table: &Table<'_>, mut textures: Option<&mut Textures>) -> Result<Material, SceneError> {
     let emission = optional(table.get("emission"), |v| v.rgb(0.0..=MAX_RADIANCE))?.unwrap_or(Rgb::splat(0.0));
     let two_sided = optional(table.get("two_sided"), |v| v.boolean())?.unwrap_or(true);
     let kind = kind(table)?;
@@ -60,7 +56,8 @@ pub(super) fn read(
     let sum = lobes.iter().fold(Rgb::splat(0.0), |sum, lobe| sum + reflectance(&lobe.model) * lobe.weight);
     if sum.largest() > 1.0001 {
         // The margin covers decimal fractions rounded to f32.
-        let text = format!("{} reflects {} of the light; the sum over its lobes is at most 1", table.name(), sum.largest());
+        let text =
+            format!("{} reflects {} of the light; the sum over its lobes is at most 1", table.name(), sum.largest());
         return Err(table.error(text));
     }
     Ok(Material { name: name.to_owned(), lobes, emission, two_sided })
@@ -86,7 +83,10 @@ fn lobe(table: &Table<'_>, kind: &str, textures: Option<&mut Textures>) -> Resul
         _ => {
             let known = quoted(["diffuse", "mirror", "conductor", "mix"].into_iter());
             let blame = table.get("type").map_or_else(|| table.error(""), |value| value.error(""));
-            return Err(SceneError { message: format!("type \"{kind}\" is not possible here; known are {known}"), ..blame });
+            return Err(SceneError {
+                message: format!("type \"{kind}\" is not possible here; known are {known}"),
+                ..blame
+            });
         }
     };
     Ok(LobeSpec { weight, model })

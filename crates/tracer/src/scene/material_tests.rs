@@ -49,7 +49,10 @@ fn a_mix_adds_its_lobes() {
 fn a_mix_that_creates_light_is_refused() {
     let text = "type = \"mix\"\nlobes = [{ base_color = 0.8 }, { type = \"mirror\", weight = 0.5 }]\n";
     let message = refused(text);
-    assert!(message.ends_with("the material reflects 1.3 of the light; the sum over its lobes is at most 1"), "{message}");
+    assert!(
+        message.ends_with("the material reflects 1.3 of the light; the sum over its lobes is at most 1"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -61,14 +64,26 @@ fn the_coefficients_of_gold_are_within_the_law() {
 #[test]
 fn refusals_name_the_line_and_what_would_be_right() {
     let cases = [
-        ("type = \"conductor\"\nf0 = 1\neta = 1\nk = 1", "dir/brass.toml:1: a conductor needs either \"f0\" or both \"eta\" and \"k\""),
-        ("type = \"conductor\"\neta = 1", "dir/brass.toml:1: a conductor needs either \"f0\" or both \"eta\" and \"k\""),
+        (
+            "type = \"conductor\"\nf0 = 1\neta = 1\nk = 1",
+            "dir/brass.toml:1: a conductor needs either \"f0\" or both \"eta\" and \"k\"",
+        ),
+        (
+            "type = \"conductor\"\neta = 1",
+            "dir/brass.toml:1: a conductor needs either \"f0\" or both \"eta\" and \"k\"",
+        ),
         (
             "type = \"conductor\"\nf0 = 1\nalpha = 0.1\nroughness = 0.1",
             "dir/brass.toml:1: give one of \"roughness\", \"alpha\", or \"alpha_x\" with \"alpha_y\"",
         ),
-        ("type = \"conductor\"\nf0 = 1\nalpha = 1e-5", "dir/brass.toml:3: \"alpha\" gives an alpha below 0.0001: use type = \"mirror\""),
-        ("type = \"conductor\"\nf0 = 1\nalpha = 1.1", "dir/brass.toml:3: \"alpha\" must be a number from 0 to 1, not 1.1"),
+        (
+            "type = \"conductor\"\nf0 = 1\nalpha = 1e-5",
+            "dir/brass.toml:3: \"alpha\" gives an alpha below 0.0001: use type = \"mirror\"",
+        ),
+        (
+            "type = \"conductor\"\nf0 = 1\nalpha = 1.1",
+            "dir/brass.toml:3: \"alpha\" must be a number from 0 to 1, not 1.1",
+        ),
         ("emission = [1, 1]", "dir/brass.toml:1: \"emission\" must be 3 numbers, not an array of 2"),
         ("\nemission = 2e6", "dir/brass.toml:2: \"emission\" must be a number from 0 to 1000000, not 2e6"),
         ("two_sided = 1", "dir/brass.toml:1: \"two_sided\" must be true or false, not 1"),

@@ -49,9 +49,10 @@ impl Library {
     /// Warnings so far; called once all materials that are used have been converted.
     pub(super) fn into_warnings(mut self) -> Vec<String> {
         let path = self.path.display();
-        let lost = self.lost.iter().map(|(what, who)| {
-            format!("{path}: {what} (in {})", quoted(who.iter().map(String::as_str)))
-        });
+        let lost = self
+            .lost
+            .iter()
+            .map(|(what, who)| format!("{path}: {what} (in {})", quoted(who.iter().map(String::as_str))));
         self.warnings.extend(lost);
         self.warnings
     }
@@ -160,7 +161,14 @@ impl Library {
 }
 
 /// The reflecting lobe of a given reflectance at normal incidence.
-fn reflection(f0: Rgb<f32>, illum: u8, mtl: &tobj::Material, pr: Option<f64>, pm: Option<f64>, aniso: Option<f64>) -> Model {
+fn reflection(
+    f0: Rgb<f32>,
+    illum: u8,
+    mtl: &tobj::Material,
+    pr: Option<f64>,
+    pm: Option<f64>,
+    aniso: Option<f64>,
+) -> Model {
     let ray_traced = matches!(illum, 3..=7);
     let sharp = mtl.shininess.is_none_or(|ns| ns >= MIRROR_NS);
     let alpha = match (pr, mtl.shininess) {

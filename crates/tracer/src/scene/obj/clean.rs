@@ -185,14 +185,15 @@ impl Cleaner<'_> {
     ) -> Result<([&'t str; 8], [f64; 8], usize), SceneError> {
         let (mut words, mut numbers, mut count) = ([""; 8], [0.0; 8], 0);
         for word in values.split_whitespace().take(8) {
-            let value: f64 = word
-                .parse()
-                .map_err(|_| self.error(number, format!("\"{word}\" in a {what} is not a number")))?;
+            let value: f64 =
+                word.parse().map_err(|_| self.error(number, format!("\"{word}\" in a {what} is not a number")))?;
             if !value.is_finite() {
                 return Err(self.error(number, format!("\"{word}\" in a {what} is not finite")));
             }
             if value.abs() > limit {
-                return Err(self.error(number, format!("\"{word}\" in a {what} is beyond the largest allowed, {limit:e}")));
+                return Err(
+                    self.error(number, format!("\"{word}\" in a {what} is beyond the largest allowed, {limit:e}"))
+                );
             }
             words[count] = word;
             numbers[count] = value;
@@ -253,9 +254,8 @@ impl Cleaner<'_> {
             return Err(self.error(number, format!("\"{word}\" is not a corner of a face (vertex/texture/normal)")));
         }
         for (kind, part) in parts.iter().enumerate().filter(|(_, part)| !part.is_empty()) {
-            let index: i64 = part
-                .parse()
-                .map_err(|_| self.error(number, format!("\"{part}\" in a face is not an index")))?;
+            let index: i64 =
+                part.parse().map_err(|_| self.error(number, format!("\"{part}\" in a face is not an index")))?;
             let (what, defined) = (KINDS[kind], self.counts[kind]);
             if index == 0 {
                 return Err(self.error(number, format!("{what} index 0 in a face: indices start at 1")));

@@ -158,7 +158,7 @@ impl<'a> Ring<'a> {
         self.reflex.retain(|&r| {
             let touched = r == before || r == after;
             let turn = |r: usize| (points[r] - points[prev[r]]).perp_dot(points[next[r]] - points[r]);
-            !cut[r] && !(touched && turn(r) > epsilon)
+            !(cut[r] || touched && turn(r) > epsilon)
         });
         after
     }

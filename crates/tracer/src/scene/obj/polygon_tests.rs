@@ -71,7 +71,8 @@ fn concave_outlines_keep_area_and_orientation_in_every_plane() {
 
 #[test]
 fn a_convex_polygon_becomes_the_fan_of_its_first_corner() {
-    let points: Vec<DVec3> = (0..6).map(|i| f64::from(i) * std::f64::consts::TAU / 6.0).map(|a| DVec3::new(a.cos(), a.sin(), 1.0)).collect();
+    let points: Vec<DVec3> =
+        (0..6).map(|i| f64::from(i) * std::f64::consts::TAU / 6.0).map(|a| DVec3::new(a.cos(), a.sin(), 1.0)).collect();
     let mut triangles = Vec::new();
     assert!(triangulate(&points, &mut triangles));
     assert_eq!(triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]);
@@ -81,7 +82,8 @@ fn a_convex_polygon_becomes_the_fan_of_its_first_corner() {
 fn outlines_that_cross_themselves_are_reported_and_never_panic() {
     let bow_tie = [[0., 0.], [1., 1.], [1., 0.], [0., 1.]];
     let lopsided = [[0., 0.], [3., 3.], [3., 0.], [0., 1.]];
-    let pentagram: Vec<[f64; 2]> = (0..5).map(|i| f64::from(i * 2) * std::f64::consts::TAU / 5.0).map(|a| [a.cos(), a.sin()]).collect();
+    let pentagram: Vec<[f64; 2]> =
+        (0..5).map(|i| f64::from(i * 2) * std::f64::consts::TAU / 5.0).map(|a| [a.cos(), a.sin()]).collect();
     for outline in [&bow_tie[..], &lopsided, &pentagram] {
         for start in 0..outline.len() {
             let mut points: Vec<DVec3> = outline.iter().map(|p| DVec3::new(p[0], p[1], 0.0)).collect();

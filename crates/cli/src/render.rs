@@ -1,0 +1,230 @@
+//! `gonio render`: a scene in, pictures and statistics out.
+
+mod progress;
+mod stats;
+
+use crate::output::{Output, Target, probe, write_text};
+use crate::usage::{Usage, several, warn};
+use anyhow::{Context, Result};
+use gonio_tracer::image::{Metadata, write_exr, write_png};
+use gonio_tracer::scene::Scene;
+use gonio_tracer::{Backend, Crop, RenderSettings, Rendering, World};
+use std::fs::{self, File};
+use std::io::{self, IsTerminal};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Render a scene.
+///
+/// Reads a scene file (.toml) or an OBJ file alone (.obj), and writes linear OpenEXR (.exr) or 8-bit sRGB (.png). The
+/// picture depends on the scene, the seed and the number of samples, never on the number of threads. Warnings and, on a
+/// terminal, progress go to standard error.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Scene file (.toml) or OBJ file (.obj)
+    scene: PathBuf,
+    /// Picture to write, .exr or .png; may be repeated; - writes OpenEXR to standard output
+    #[arg(short, long, value_name = "OUT", required = true, value_parser = picture)]
+    output: Vec<Target>,
+    /// Samples per pixel, instead of the scene's
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    spp: Option<u32>,
+    /// Seed of all random numbers, instead of the scene's
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Number of threads; 0 for all
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    threads: usize,
+    /// Ray-casting backend
+    #[arg(long, value_name = "NAME", default_value = "obvhs", value_parser = backend, help = backend_help())]
+    backend: Backend,
+    /// Number of scattering events after which a path ends, instead of the scene's
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1024))]
+    max_depth: Option<u32>,
+    /// Let every path run to its full length
+    #[arg(long)]
+    no_russian_roulette: bool,
+    /// Size of the picture, instead of the scene's
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
+    /// Render only the pixels X0 ≤ x < X1, Y0 ≤ y < Y1, counted from the top left; each is as in the whole picture
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = crop)]
+    crop: Option<[u32; 4]>,
+    /// Write statistics as JSON; - for standard output
+    #[arg(long, value_name = "STATS.json")]
+    stats: Option<Target>,
+    /// Print the statistics to standard output as JSON on one line
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the subcommand.
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    check_outputs(args)?;
+    let start = Instant::now();
+    let mut scene = Scene::load(&args.scene)?;
+    if let Some([width, height]) = args.size {
+        (scene.film.width, scene.film.height) = (width, height);
+    }
+    check_crop(args, &scene)?;
+    let world = World::new(&scene)?;
+    let load_seconds = start.elapsed().as_secs_f64();
+    let mut warnings: Vec<&str> = Vec::new();
+    for warning in scene.warnings.iter().chain(world.warnings()) {
+        if !warnings.contains(&warning.as_str()) {
+            warn(warning);
+            warnings.push(warning);
+        }
+    }
+
+    let start = Instant::now();
+    let accel = args.backend.build(world.geometry());
+    let build_seconds = start.elapsed().as_secs_f64();
+
+    let settings = settings(args, &scene, &world);
+    let mut bar = progress::Bar::new(settings.spp);
+    let rendering = gonio_tracer::render(&world, &*accel, &settings, &mut |progress| bar.update(&progress));
+    bar.finish();
+    if rendering.stats.dropped_samples > 0 {
+        let (dropped, all) = (rendering.stats.dropped_samples, rendering.stats.samples);
+        warn(&format!("{dropped} of {all} samples were not finite or out of range and count as black"));
+    }
+
+    let times = stats::Times { load_seconds, build_seconds };
+    write_pictures(args, &scene, &settings, &rendering, &times)?;
+    let stats = stats::stats(args.backend, &settings, &rendering, &times);
+    if let Some(target) = &args.stats {
+        write_text(target, &format!("{stats:#}\n"))?;
+    }
+    if args.json {
+        write_text(&Target::Stdout, &format!("{stats}\n"))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Finds out before the work starts whether its results can be kept.
+fn check_outputs(args: &Args) -> Result<()> {
+    let mut to_stdout = usize::from(args.json);
+    for target in args.output.iter().chain(&args.stats) {
+        match target {
+            Target::Stdout => to_stdout += 1,
+            Target::File(path) if is_picture(path) => probe(path)?,
+            Target::File(_) => {} // the statistics: checked below
+        }
+    }
+    if let Some(target @ Target::File(_)) = &args.stats {
+        drop(Output::create(target)?);
+    }
+    if to_stdout > 1 {
+        return Err(Usage("only one result can go to standard output".to_owned()).into());
+    }
+    if args.output.contains(&Target::Stdout) && io::stdout().is_terminal() {
+        return Err(Usage("OpenEXR is not written to a terminal: redirect standard output".to_owned()).into());
+    }
+    Ok(())
+}
+
+fn check_crop(args: &Args, scene: &Scene) -> Result<()> {
+    let (width, height) = (scene.film.width, scene.film.height);
+    match args.crop {
+        Some([x0, y0, x1, y1]) if x1 > width || y1 > height => {
+            let text = format!("--crop {x0},{y0},{x1},{y1} does not fit the picture of {width} x {height} pixels");
+            Err(Usage(text).into())
+        }
+        _ => Ok(()),
+    }
+}
+
+fn settings(args: &Args, scene: &Scene, world: &World) -> RenderSettings {
+    let mut settings = RenderSettings::of(scene, world);
+    settings.spp = args.spp.unwrap_or(settings.spp);
+    settings.seed = args.seed.unwrap_or(settings.seed);
+    settings.max_depth = args.max_depth.unwrap_or(settings.max_depth);
+    settings.russian_roulette &= !args.no_russian_roulette;
+    settings.threads = args.threads;
+    settings.crop = args.crop.map(|[x0, y0, x1, y1]| Crop { x0, x1, y0, y1 });
+    settings
+}
+
+fn write_pictures(
+    args: &Args,
+    scene: &Scene,
+    settings: &RenderSettings,
+    rendering: &Rendering,
+    times: &stats::Times,
+) -> Result<()> {
+    let picture = &rendering.picture;
+    let other = vec![
+        ("scene".to_owned(), args.scene.display().to_string()),
+        ("plan".to_owned(), settings.plan.to_string()),
+        ("russian_roulette".to_owned(), settings.russian_roulette.to_string()),
+    ];
+    let metadata = Metadata {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        seed: settings.seed,
+        spp: settings.spp,
+        max_depth: settings.max_depth,
+        backend: args.backend.to_string(),
+        samples: rendering.stats.samples,
+        load_seconds: times.load_seconds,
+        build_seconds: times.build_seconds,
+        render_seconds: rendering.stats.render_seconds,
+        film_hash: rendering.stats.film_hash.clone(),
+        other,
+    };
+    for target in &args.output {
+        match target {
+            Target::File(path) if extension(path) == "png" => write_png(path, picture, scene.film.exposure)?,
+            Target::File(path) => write_exr(path, picture, &metadata)?,
+            Target::Stdout => {
+                // The encoder writes files; a pipe gets a copy of one.
+                let path = std::env::temp_dir().join(format!("gonio-{}.exr", std::process::id()));
+                let copied = write_exr(&path, picture, &metadata).map_err(anyhow::Error::from).and_then(|()| {
+                    let mut file = File::open(&path)?;
+                    io::copy(&mut file, &mut io::stdout()).context("standard output: cannot be written")
+                });
+                let _ = fs::remove_file(&path); // left in the system's temporary folder at worst
+                copied?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn extension(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+}
+
+fn is_picture(path: &Path) -> bool {
+    matches!(extension(path).as_str(), "exr" | "png")
+}
+
+fn picture(text: &str) -> Result<Target, String> {
+    match Target::named(text) {
+        Target::File(path) if !is_picture(&path) => Err("pictures are written as .exr or .png".to_owned()),
+        target => Ok(target),
+    }
+}
+
+fn backend_names() -> String {
+    Backend::ALL.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+}
+
+fn backend_help() -> String {
+    format!("Ray-casting backend: one of {}", backend_names())
+}
+
+fn backend(text: &str) -> Result<Backend, String> {
+    text.parse().map_err(|_| format!("backends are {}", backend_names()))
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let size = several(text, 'x').filter(|size| size.iter().all(|n| (1..=65_536).contains(n)));
+    size.ok_or_else(|| "a size is WIDTHxHEIGHT, each from 1 to 65536".to_owned())
+}
+
+fn crop(text: &str) -> Result<[u32; 4], String> {
+    let crop = several(text, ',').filter(|&[x0, y0, x1, y1]| x0 < x1 && y0 < y1);
+    crop.ok_or_else(|| "a crop is X0,Y0,X1,Y1 in pixels, with X0 < X1 and Y0 < Y1".to_owned())
+}

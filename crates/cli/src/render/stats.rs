@@ -1,0 +1,47 @@
+//! The statistics of a rendering, as JSON.
+
+use gonio_tracer::{Backend, RenderSettings, Rendering};
+use serde_json::{Value, json};
+
+/// What the renderer cannot know.
+pub(super) struct Times {
+    /// Reading the scene and making it ready.
+    pub(super) load_seconds: f64,
+    /// Building the acceleration structure.
+    pub(super) build_seconds: f64,
+}
+
+/// Everything that is known about a rendering. `x` and `y` are pixels of the whole picture, also with a crop.
+pub(super) fn stats(backend: Backend, settings: &RenderSettings, rendering: &Rendering, times: &Times) -> Value {
+    let stats = &rendering.stats;
+    let rate = if stats.render_seconds > 0.0 { stats.samples as f64 / stats.render_seconds / 1e6 } else { 0.0 };
+    let largest: Vec<Value> = stats
+        .largest
+        .iter()
+        .take(10)
+        .map(|l| json!({ "value": l.value, "x": l.x, "y": l.y, "sample": l.sample }))
+        .collect();
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "load_seconds": times.load_seconds,
+        "build_seconds": times.build_seconds,
+        "render_seconds": stats.render_seconds,
+        "samples": stats.samples,
+        "closest_rays": stats.closest_rays,
+        "shadow_rays": stats.shadow_rays,
+        "msamples_per_second": rate,
+        "lanes_full": stats.lanes_full,
+        "largest_samples": largest,
+        "dropped_samples": stats.dropped_samples,
+        "backend": backend.to_string(),
+        "threads": stats.threads,
+        "seed": settings.seed,
+        "spp": settings.spp,
+        "width": rendering.picture.width,
+        "height": rendering.picture.height,
+        "max_depth": settings.max_depth,
+        "russian_roulette": settings.russian_roulette,
+        "film_hash": stats.film_hash,
+        "plan": settings.plan.to_string(),
+    })
+}

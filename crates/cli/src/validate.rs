@@ -1,0 +1,152 @@
+//! `gonio validate`: every physical check, one table, one report, one exit code.
+//!
+//! Three groups of instruments: those of `gonio-lab` on the kernel's lobes, furnace scenes through the whole tracer
+//! ([`scenes`]), and the census of the ray-casting backends ([`census`]). Checks that are not statistical are exact. The
+//! statistical ones share one family-wise significance of 0.01 per run, split in halves: [`SIGNIFICANCE`] for the scenes,
+//! the same for the kernel. What cannot run is named and never counted as passed.
+
+mod census;
+mod grade;
+mod html;
+mod report;
+mod scenes;
+mod statistics;
+mod table;
+
+use crate::output::{Target, write_text};
+use crate::random::fresh_seed;
+use crate::usage::Usage;
+use anyhow::{Context, Result};
+use gonio_lab::{Check, Effort, Options, Outcome, validate_kernel};
+use indicatif::ProgressBar;
+use report::Report;
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// What all tests of the furnace scenes together may fail by chance, per run, and likewise all tests of the kernel:
+/// half of 0.01 each.
+const SIGNIFICANCE: f64 = 0.005;
+/// What `gonio-lab` grants all tests of the kernel.
+const LAB_SIGNIFICANCE: f64 = 0.01;
+
+/// Run every physical check and write a report.
+///
+/// Measures the kernel's lobes with every instrument, renders furnace scenes whose answer is known, and casts the same rays
+/// with every backend. Prints one line per instrument and what failed; writes report.json and report.html to the output
+/// folder. With a correct build, all tests of a run together fail by chance with probability 0.01 at most, at any seed.
+/// Exits with 0 if everything that ran passed, with 3 otherwise.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Under a minute: every instrument, fewer rows
+    #[arg(long, conflicts_with = "full")]
+    quick: bool,
+    /// The sample counts that find the smallest faults: many minutes
+    #[arg(long)]
+    full: bool,
+    /// Only the instrument of this name, or checks whose subject contains this text
+    #[arg(long, value_name = "NAME")]
+    only: Option<String>,
+    /// Where all random numbers come from: a number, or "random"
+    #[arg(long, value_name = "N|random", default_value = "1", value_parser = seed)]
+    seed: u64,
+    /// Folder for report.json, report.html and the rendered pictures; it is made if it does not exist
+    #[arg(long, value_name = "DIR", default_value = "target/validate")]
+    out: PathBuf,
+    /// Print the report to standard output as JSON instead of the table
+    #[arg(long)]
+    json: bool,
+    /// Print what each instrument proves, and run nothing
+    #[arg(long)]
+    list: bool,
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    if text == "random" {
+        return Ok(fresh_seed());
+    }
+    text.parse().map_err(|_| "a seed is a number from 0 to 2^64 - 1, or \"random\"".to_owned())
+}
+
+/// Name of every instrument and what it proves.
+fn instruments() -> Vec<(&'static str, &'static str)> {
+    let own = [scenes::INSTRUMENTS.as_slice(), census::INSTRUMENTS.as_slice()].concat();
+    gonio_lab::instruments().iter().copied().chain(own).collect()
+}
+
+/// Runs the subcommand.
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    if args.list {
+        let width = instruments().iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+        let lines: Vec<_> = instruments().iter().map(|(name, proves)| format!("{name:width$}  {proves}\n")).collect();
+        write_text(&Target::Stdout, &lines.concat())?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let effort = match (args.quick, args.full) {
+        (true, _) => Effort::Quick,
+        (_, true) => Effort::Full,
+        _ => Effort::Standard,
+    };
+    let options = Options { seed: args.seed, only: args.only.clone(), ..Options::new(effort) };
+    // Fail before the work, not after it.
+    std::fs::create_dir_all(&args.out).with_context(|| format!("{}: cannot be made", args.out.display()))?;
+    crate::output::probe(&args.out.join("report.json"))?;
+
+    let start = Instant::now();
+    let mut checks = Vec::new();
+    let spinner = spinner();
+    let mut sink = |check: Check| {
+        if let Some(spinner) = &spinner {
+            spinner.set_message(format!("{}: {}", check.instrument, check.subject));
+        }
+        checks.push(check);
+    };
+    validate_kernel(&options, &mut |check| sink(at_half_the_budget(check)));
+    let pictures = scenes::run(&options, &args.out, &mut sink)?;
+    census::run(&options, &mut sink);
+    if let Some(spinner) = spinner {
+        spinner.finish_and_clear();
+    }
+    if let (true, Some(only)) = (checks.is_empty(), &args.only) {
+        let names: Vec<_> = instruments().iter().map(|(name, _)| *name).collect();
+        return Err(Usage(format!("--only {only} matches nothing; instruments are {}", names.join(", "))).into());
+    }
+
+    let report = Report::new(&options, checks, instruments(), start.elapsed().as_secs_f64());
+    let json = serde_json::to_string_pretty(&report).context("the report cannot be written as JSON")? + "\n";
+    write_text(&Target::File(args.out.join("report.json")), &json)?;
+    write_text(&Target::File(args.out.join("report.html")), &html::page(&report, &pictures))?;
+    let printed = if args.json {
+        json
+    } else {
+        format!("{}\nreport: {}\n", table::text(&report), args.out.join("report.html").display())
+    };
+    write_text(&Target::Stdout, &printed)?;
+    Ok(ExitCode::from(if report.failed == 0 { 0 } else { 3 }))
+}
+
+/// Judges a p-value of the lab again, at the part of the budget that the kernel has here. With Šidák's levels the part of
+/// n tests is a power: (1 − level)ⁿ = 1 − significance.
+fn at_half_the_budget(mut check: Check) -> Check {
+    if check.meaning == "p ≥" && !matches!(check.outcome, Outcome::NotRun(_)) {
+        let share = (-SIGNIFICANCE).ln_1p() / (-LAB_SIGNIFICANCE).ln_1p();
+        check.limit = -(share * (-check.limit).ln_1p()).exp_m1();
+        check.outcome = if check.measured >= check.limit { Outcome::Passed } else { Outcome::Failed };
+    }
+    check
+}
+
+fn spinner() -> Option<ProgressBar> {
+    std::io::stderr().is_terminal().then(|| {
+        let spinner = ProgressBar::new_spinner();
+        spinner.enable_steady_tick(Duration::from_millis(200));
+        spinner.set_message("measuring the kernel");
+        spinner
+    })
+}
+
+/// Whether `--only` asks for a check.
+fn wanted(options: &Options, instrument: &str, subject: &str) -> bool {
+    options.only.as_ref().is_none_or(|only| only == instrument || subject.contains(only.as_str()))
+}

@@ -1,0 +1,256 @@
+//! Furnace scenes: pictures whose every pixel is known, rendered through the whole tracer.
+//!
+//! **scene-furnace.** In a closed room whose walls emit L and reflect the part a of what arrives, whatever the shape of the
+//! reflection, radiance is the same everywhere: L·(1 + a + a² + …). With max_depth d the sum ends with aᵈ, so the answer is
+//! L·(1 − a^(d+1))/(1 − a) exactly. A white convex object under a uniform sky vanishes, and a grey one shows the sky times
+//! its albedo, because no light comes back to it. Every block of pixels is tested against that number (see
+//! [`super::statistics`]).
+//!
+//! **scene-hash.** Backend, number of threads and the pruning of the plan never change a bit of the film.
+//!
+//! **scene-samples.** No sample was dropped as not finite or out of range.
+
+mod furnace;
+
+use super::statistics::{level, tests, worst_block};
+use super::{SIGNIFICANCE, wanted};
+use anyhow::{Context, Result};
+use furnace::{FURNACES, Furnace, Shot};
+use gonio_lab::{Check, Effort, Options, Outcome};
+use gonio_tracer::image::{Picture, write_png};
+use gonio_tracer::{Backend, Plan};
+use std::path::Path;
+use std::time::Instant;
+
+/// Name and meaning of the instruments in this file.
+pub(super) const INSTRUMENTS: [(&str, &str); 3] = [
+    ("scene-furnace", "Rendered furnaces have their analytic radiance in every block of pixels, with every backend."),
+    ("scene-hash", "Backend, number of threads and pruning of the plan do not change a bit of a picture."),
+    ("scene-samples", "Rendering drops no sample as not finite or out of range."),
+];
+
+/// A picture for the report.
+pub(super) struct Exhibit {
+    pub(super) name: &'static str,
+    pub(super) answer: String,
+    /// PNG files: as rendered, and the deviation from the answer, magnified around mid grey.
+    pub(super) rendered: Vec<u8>,
+    pub(super) deviation: Vec<u8>,
+}
+
+/// How much the deviation is magnified in the report.
+pub(super) const MAGNIFIED: f64 = 10.0;
+
+/// Renders all furnaces and hands their checks to `sink`.
+pub(super) fn run(options: &Options, out: &Path, sink: &mut dyn FnMut(Check)) -> Result<Vec<Exhibit>> {
+    let folder = out.join("scenes");
+    let tests: usize = FURNACES.iter().map(|f| f.shots().len() * tests(f.size, f.size)).sum();
+    let level = level(SIGNIFICANCE, tests);
+    let mut exhibits = Vec::new();
+    for furnace in &FURNACES {
+        let instruments = INSTRUMENTS.iter().map(|(name, _)| *name).chain(["planted-faults"]);
+        if instruments.into_iter().any(|instrument| may_want(options, instrument, furnace.name)) {
+            exhibits.push(measure(furnace, options, level, &folder, out, sink)?);
+        }
+    }
+    Ok(exhibits)
+}
+
+fn measure(
+    furnace: &Furnace,
+    options: &Options,
+    level: f64,
+    folder: &Path,
+    out: &Path,
+    sink: &mut dyn FnMut(Check),
+) -> Result<Exhibit> {
+    let scene = furnace.unpack(folder)?;
+    let mut send = |check: Check| {
+        if wanted(options, &check.instrument, &check.subject) {
+            sink(check);
+        }
+    };
+    let spp = match options.effort {
+        Effort::Quick => 16,
+        Effort::Standard => 64,
+        Effort::Full => 1024,
+    };
+    let mut dropped = 0;
+    let mut samples = 0;
+    let mut pictures: Vec<(Shot, Picture, String)> = Vec::new();
+    for shot in furnace.shots() {
+        let start = Instant::now();
+        let rendering = furnace.render(&scene, &shot, spp, options.seed)?;
+        let picture = rendering.picture;
+        let worst = worst_block(&picture, furnace.answer(&scene), furnace.slack(&scene));
+        dropped += rendering.stats.dropped_samples;
+        samples += rendering.stats.samples;
+        send(p_value(furnace, &shot, &worst, level, spp, start));
+        pictures.push((shot, picture, rendering.stats.film_hash));
+    }
+    let picture = pictures[0].1.clone();
+    planted_faults(furnace, &scene, &picture, level, &mut send);
+    hashes(furnace, &scene, options, &pictures, &mut send)?;
+    send(Check {
+        instrument: "scene-samples".to_owned(),
+        subject: furnace.name.to_owned(),
+        outcome: outcome(dropped == 0),
+        measured: dropped as f64,
+        limit: 0.0,
+        meaning: "samples dropped ≤".to_owned(),
+        detail: format!("of {samples} samples"),
+        seconds: 0.0,
+    });
+    exhibit(furnace, &scene, &picture, out)
+}
+
+fn p_value(
+    furnace: &Furnace,
+    shot: &Shot,
+    worst: &super::statistics::Worst,
+    level: f64,
+    spp: u32,
+    start: Instant,
+) -> Check {
+    Check {
+        instrument: "scene-furnace".to_owned(),
+        subject: format!("{}, {shot}", furnace.name),
+        outcome: outcome(worst.p >= level),
+        measured: worst.p,
+        limit: level,
+        meaning: "p ≥".to_owned(),
+        detail: format!("{}; {spp} samples per pixel", worst.place),
+        seconds: start.elapsed().as_secs_f64(),
+    }
+}
+
+/// Pictures that are wrong on purpose: the test must reject each.
+fn planted_faults(
+    furnace: &Furnace,
+    scene: &gonio_tracer::scene::Scene,
+    picture: &Picture,
+    level: f64,
+    send: &mut dyn FnMut(Check),
+) {
+    type Fault = (&'static str, fn(usize, usize, [f32; 3]) -> [f32; 3]);
+    let faults: [Fault; 3] = [
+        ("everything 2 % too bright", |_, _, rgb| rgb.map(|x| x * 1.02)),
+        ("one block 20 % too dark", |x, y, rgb| if x / 8 == 3 && y / 8 == 2 { rgb.map(|x| x * 0.8) } else { rgb }),
+        ("one pixel not a number", |x, y, rgb| if (x, y) == (40, 9) { [f32::NAN; 3] } else { rgb }),
+    ];
+    for (name, fault) in faults {
+        let start = Instant::now();
+        let mut wrong = picture.clone();
+        let width = wrong.width as usize;
+        wrong.rgb.iter_mut().enumerate().for_each(|(i, rgb)| *rgb = fault(i % width, i / width, *rgb));
+        let worst = worst_block(&wrong, furnace.answer(scene), furnace.slack(scene));
+        send(Check {
+            instrument: "planted-faults".to_owned(),
+            subject: format!("scene-furnace: {}, {name}", furnace.name),
+            outcome: outcome(worst.p < level),
+            measured: worst.p,
+            limit: level,
+            meaning: "p of the fault <".to_owned(),
+            detail: worst.place,
+            seconds: start.elapsed().as_secs_f64(),
+        });
+    }
+}
+
+/// Everything that may not change a bit, and one thing that must.
+fn hashes(
+    furnace: &Furnace,
+    scene: &gonio_tracer::scene::Scene,
+    options: &Options,
+    pictures: &[(Shot, Picture, String)],
+    send: &mut dyn FnMut(Check),
+) -> Result<()> {
+    const SPP: u32 = 4; // a bit is as easily wrong in few samples as in many
+    let start = Instant::now();
+    let base = Shot { backend: Backend::Obvhs, threads: 1, plan: None, roulette: scene.integrator.russian_roulette };
+    let mut variants = Vec::new();
+    for backend in Backend::ALL {
+        for threads in [1, 2] {
+            variants.push(Shot { backend, threads, ..base });
+        }
+        variants.push(Shot { backend, plan: Some(Plan::everything()), ..base });
+    }
+    let expected = furnace.render(scene, &base, SPP, options.seed)?.stats.film_hash;
+    let mut differing = Vec::new();
+    for shot in &variants {
+        let hash = furnace.render(scene, shot, SPP, options.seed)?.stats.film_hash;
+        if hash != expected {
+            differing.push(format!("{shot}: {hash}"));
+        }
+    }
+    // The long renderings as well, among those that differ in the backend alone.
+    for (shot, _, hash) in pictures {
+        let twin = pictures.iter().find(|(other, ..)| other.roulette == shot.roulette).map(|(.., hash)| hash);
+        if twin != Some(hash) {
+            differing.push(format!("{shot}: {hash}"));
+        }
+    }
+    let compared = variants.len() + pictures.len();
+    send(Check {
+        instrument: "scene-hash".to_owned(),
+        subject: format!("{}: backends, threads, plans", furnace.name),
+        outcome: outcome(differing.is_empty()),
+        measured: differing.len() as f64,
+        limit: 0.0,
+        meaning: "film hashes that differ ≤".to_owned(),
+        detail: if differing.is_empty() { format!("{compared} renderings, {expected}") } else { differing.join("; ") },
+        seconds: start.elapsed().as_secs_f64(),
+    });
+    if furnace.noisy {
+        let start = Instant::now();
+        let other = furnace.render(scene, &base, SPP, options.seed ^ 1)?.stats.film_hash;
+        send(Check {
+            instrument: "planted-faults".to_owned(),
+            subject: format!("scene-hash: {}, another seed", furnace.name),
+            outcome: outcome(other != expected),
+            measured: f64::from(u8::from(other != expected)),
+            limit: 1.0,
+            meaning: "differences noticed ≥".to_owned(),
+            detail: String::new(),
+            seconds: start.elapsed().as_secs_f64(),
+        });
+    }
+    Ok(())
+}
+
+fn exhibit(
+    furnace: &Furnace,
+    scene: &gonio_tracer::scene::Scene,
+    picture: &Picture,
+    out: &Path,
+) -> Result<Exhibit> {
+    let expected = furnace.answer(scene);
+    let mut deviation = picture.clone();
+    for rgb in &mut deviation.rgb {
+        for (x, expected) in rgb.iter_mut().zip(expected) {
+            // 0.214 is mid grey in sRGB.
+            *x = (0.214 * (1.0 + MAGNIFIED * (f64::from(*x) / expected - 1.0))) as f32;
+        }
+    }
+    let save = |name: String, picture: &Picture, exposure: f32| -> Result<Vec<u8>> {
+        let path = out.join(name);
+        write_png(&path, picture, exposure)?;
+        std::fs::read(&path).with_context(|| format!("{}: cannot be read", path.display()))
+    };
+    let [r, g, b] = expected;
+    Ok(Exhibit {
+        name: furnace.name,
+        answer: format!("{}: {r:.5}, {g:.5}, {b:.5}", furnace.law()),
+        rendered: save(format!("{}.png", furnace.name), picture, scene.film.exposure)?,
+        deviation: save(format!("{}-deviation.png", furnace.name), &deviation, 0.0)?,
+    })
+}
+
+/// Whether `--only` may ask for something of this scene: subjects begin with its name or contain it.
+fn may_want(options: &Options, instrument: &str, scene: &str) -> bool {
+    options.only.as_ref().is_none_or(|only| only == instrument || only.contains(scene) || scene.contains(only.as_str()))
+}
+
+fn outcome(passed: bool) -> Outcome {
+    if passed { Outcome::Passed } else { Outcome::Failed }
+}

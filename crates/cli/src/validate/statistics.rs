@@ -1,0 +1,109 @@
+//! The test of a furnace picture: every block of pixels, and the picture as a whole, against a known mean.
+//!
+//! All pixels of a furnace picture have the same expectation, and their means over many samples are independent and nearly
+//! normal. So the mean of a block is compared with the answer by Student's t, its error estimated from the spread of its
+//! own pixels. The blocks find a fault in one corner, the whole finds a small one everywhere.
+
+use gonio_tracer::image::Picture;
+use statrs::function::beta::beta_reg;
+
+/// Pixels along the edge of a block.
+const BLOCK: u32 = 8;
+
+/// The level of each of n tests that together fail by chance with probability `family` at most (Šidák).
+pub(super) fn level(family: f64, tests: usize) -> f64 {
+    // 1 − (1 − s)^(1/n) without cancellation.
+    -((-family).ln_1p() / tests.max(1) as f64).exp_m1()
+}
+
+/// How many tests [`worst_block`] makes of a picture: three channels of each block and of the whole.
+pub(super) fn tests(width: u32, height: u32) -> usize {
+    3 * ((width.div_ceil(BLOCK) * height.div_ceil(BLOCK)) as usize + 1)
+}
+
+/// The smallest p-value of a picture, and where it was found.
+#[derive(Clone, Debug)]
+pub(super) struct Worst {
+    pub(super) p: f64,
+    pub(super) place: String,
+}
+
+/// Compares a picture with the radiance that all its pixels should have. `slack` is the relative difference that is
+/// rounding and not chance.
+pub(super) fn worst_block(picture: &Picture, expected: [f64; 3], slack: f64) -> Worst {
+    let mut worst = Worst { p: 1.0, place: String::new() };
+    let whole = [0, picture.width, 0, picture.height];
+    let columns = (0..picture.width).step_by(BLOCK as usize);
+    let blocks = columns.flat_map(|x| (0..picture.height).step_by(BLOCK as usize).map(move |y| [x, y]));
+    let blocks = blocks.map(|[x, y]| [x, (x + BLOCK).min(picture.width), y, (y + BLOCK).min(picture.height)]);
+    for area in std::iter::once(whole).chain(blocks) {
+        for (channel, (&expected, name)) in expected.iter().zip(["red", "green", "blue"]).enumerate() {
+            let [mean, error, n] = mean_and_error(picture, area, channel);
+            let p = student_p((mean - expected).abs() - slack * expected, error, n - 1.0);
+            if p < worst.p || worst.place.is_empty() {
+                let [x0, x1, y0, y1] = area;
+                let place = if area == whole { "whole picture".to_owned() } else { format!("pixels {x0}..{x1} x {y0}..{y1}") };
+                worst = Worst { p, place: format!("{place}, {name}: {mean:.6} ± {error:.1e}, should be {expected:.6}") };
+            }
+        }
+    }
+    worst
+}
+
+fn mean_and_error(picture: &Picture, [x0, x1, y0, y1]: [u32; 4], channel: usize) -> [f64; 3] {
+    let rows = (y0..y1).map(|y| (y * picture.width) as usize);
+    let pixels = rows.flat_map(|row| &picture.rgb[row + x0 as usize..row + x1 as usize]).map(|rgb| f64::from(rgb[channel]));
+    let n = f64::from((x1 - x0) * (y1 - y0));
+    let mean = pixels.clone().sum::<f64>() / n;
+    let variance = pixels.map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0).max(1.0);
+    [mean, (variance / n).sqrt(), n]
+}
+
+/// Two-sided p-value of a deviation in standard errors, with so many degrees of freedom. A NaN is evidence of a fault.
+fn student_p(deviation: f64, error: f64, freedom: f64) -> f64 {
+    if deviation <= 0.0 {
+        return 1.0;
+    }
+    let t = deviation / error;
+    if !t.is_finite() || freedom < 1.0 {
+        return 0.0;
+    }
+    beta_reg(0.5 * freedom, 0.5, freedom / (freedom + t * t))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn p_values_match_the_printed_tables() {
+        // Abramowitz & Stegun, table 26.10: t(0.05; 10) = 2.228, t(0.01; 60) = 2.660.
+        assert!((student_p(2.228, 1.0, 10.0) - 0.05).abs() < 1e-4);
+        assert!((student_p(2.660, 1.0, 60.0) - 0.01).abs() < 1e-4);
+        assert_eq!(student_p(f64::NAN, 1.0, 10.0), 0.0);
+        assert_eq!(student_p(1e-9, 0.0, 10.0), 0.0);
+        assert_eq!(student_p(-1e-9, 0.0, 10.0), 1.0);
+    }
+
+    #[test]
+    fn noise_passes_and_a_wrong_corner_does_not() {
+        let noise = |i: usize, k: usize| (crate::random::unit(1, i as u64, k as u64) - 0.5) as f32;
+        let mut picture = Picture {
+            width: 20,
+            height: 20,
+            rgb: (0..400).map(|i| std::array::from_fn(|k| 1.0 + 0.1 * noise(i, k))).collect(),
+        };
+        let limit = level(0.005, tests(20, 20));
+        assert!(worst_block(&picture, [1.0; 3], 0.0).p > limit);
+        for y in 0..8 {
+            for x in 0..8 {
+                picture.rgb[y * 20 + x][1] *= 1.05;
+            }
+        }
+        let worst = worst_block(&picture, [1.0; 3], 0.0);
+        assert!(worst.p < limit);
+        assert!(worst.place.contains("0..8 x 0..8, green"), "{}", worst.place);
+        picture.rgb[399][2] = f32::NAN;
+        assert_eq!(worst_block(&picture, [1.0; 3], 0.0).p, 0.0);
+    }
+}

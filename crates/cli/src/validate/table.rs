@@ -1,0 +1,62 @@
+//! The report on a terminal: one line per instrument, then what failed, then the sums.
+
+use super::grade::{groups, severity, short, verdict, worst};
+use super::report::Report;
+use gonio_lab::{Check, Outcome};
+
+/// Failing rows that are printed; the rest is in the report.
+const SHOWN: usize = 30;
+/// Longest meaning that fits the table.
+const MEANING: usize = 36;
+
+/// The whole text.
+pub(super) fn text(report: &Report) -> String {
+    let groups = groups(&report.checks);
+    let width = groups.iter().map(|(name, _)| name.len()).max().unwrap_or(0).max("instrument".len());
+    let mut out = format!(
+        "gonio {} validate, {} effort, seed {}\n\n{:width$}  rows  {:>9}  {:<9}  {:MEANING$}  {:>7}  result\n",
+        report.version, report.effort_name(), report.seed, "instrument", "worst", "limit", "where worst is measured as", "seconds",
+    );
+    for (name, group) in &groups {
+        let seconds: f64 = group.iter().map(|check| check.seconds).sum();
+        let missing = group.iter().filter(|check| matches!(check.outcome, Outcome::NotRun(_))).count();
+        let note = if missing > 0 && missing < group.len() { format!(" ({missing} not run)") } else { String::new() };
+        let (measured, limit, meaning) = worst(group.iter().copied()).map_or_else(
+            || (String::new(), String::new(), String::new()),
+            |check| (short(check.measured), short(check.limit), cut(&check.meaning)),
+        );
+        out += &format!(
+            "{name:width$}  {:4}  {measured:>9}  {limit:<9}  {meaning:MEANING$}  {seconds:7.1}  {}{note}\n",
+            group.len(),
+            verdict(group),
+        );
+    }
+    out.push('\n');
+    let mut failed: Vec<&Check> = report.checks.iter().filter(|check| check.failed()).collect();
+    failed.sort_by(|a, b| severity(b).total_cmp(&severity(a)));
+    for check in failed.iter().take(SHOWN) {
+        let (measured, limit) = (short(check.measured), short(check.limit));
+        out += &format!("FAIL  {}: {}\n      {measured} against {} {limit}\n", check.instrument, check.subject, check.meaning);
+        if !check.detail.is_empty() {
+            out += &format!("      {}\n", check.detail);
+        }
+    }
+    if failed.len() > SHOWN {
+        out += &format!("      … and {} more: see the report\n", failed.len() - SHOWN);
+    }
+    for check in &report.checks {
+        if let Outcome::NotRun(why) = &check.outcome {
+            out += &format!("not run  {}: {}: {why}\n", check.instrument, check.subject);
+        }
+    }
+    out + &format!("{}, {:.1} s\n", report.summary(), report.seconds)
+}
+
+fn cut(text: &str) -> String {
+    if text.chars().count() <= MEANING {
+        return text.to_owned();
+    }
+    // The end says which way round the limit is.
+    let (head, tail) = (MEANING - 3, text.chars().last().unwrap_or_default());
+    format!("{}… {tail}", text.chars().take(head).collect::<String>())
+}
