@@ -107,9 +107,7 @@ impl Lanes {
         let batch = Scalars::new();
         let eight = |of: &dyn Fn(usize) -> f32| F32x8::new(std::array::from_fn(of));
         let directions = |v: &[Vec3<f32>]| {
-            v.chunks_exact(8)
-                .map(|v| Vec3::new(eight(&|i| v[i].x), eight(&|i| v[i].y), eight(&|i| v[i].z)))
-                .collect()
+            v.chunks_exact(8).map(|v| Vec3::new(eight(&|i| v[i].x), eight(&|i| v[i].y), eight(&|i| v[i].z))).collect()
         };
         let u = batch.u.chunks_exact(8).map(|u| std::array::from_fn(|j| eight(&|i| u[i][j]))).collect();
         Self { wo: directions(&batch.wo), wi: directions(&batch.wi), u }

@@ -12,8 +12,8 @@ mod validate;
 use std::process::ExitCode;
 
 const USAGE: &str = "\
-cargo xtask validate [ARG]...    build as the tests are built, then `gonio validate ARG...`; the report goes to
-                                 target/validate unless ARG says `--out DIR`; exit code of `gonio validate`
+cargo xtask validate [ARG]...    build as the tests are built, then `gonio validate ARG...` from the root of the
+                                 repository; exit code 0 passed, 1 error, 2 wrong usage, 3 a check failed
 cargo xtask no-std               prove that the kernel needs no std, no allocator and cannot panic
 cargo xtask peers [--rounds N] [--spp N] [--python PATH]
                                  the Cornell box against Mitsuba 3, in turns; Python with mitsuba is `python3`

@@ -23,7 +23,7 @@ const METHODS: [&str; 5] = ["eval", "sample", "discrete", "albedo_estimate", "do
 /// Types whose methods the proof calls in one function per number.
 const TYPES: [&str; 6] = ["Closure", "Unguarded", "Surface", "Frame", "Rgb", "units"];
 /// Functions that have no number, and what a program without std must bring along.
-const OTHERS: [&str; 5] = ["masks_of_lanes", "prove", "_start", "memcpy", "memset"];
+const OTHERS: [&str; 5] = ["lanes", "prove", "_start", "memcpy", "memset"];
 /// What the panic handler calls.
 const UNDEFINED: &str = "gonio_kernel_can_panic";
 

@@ -76,7 +76,8 @@ fn splat_corners(triangle: &WorldTriangle) -> [Vec3<F32x8>; 3] {
 #[inline(always)]
 pub(crate) fn record(best: &mut Hit8, mask: Mask8, c: &Crossing, id: TriangleId) {
     best.t = F32x8::select(mask, c.t, best.t);
-    best.bary = [F32x8::select(mask, c.bary[0], best.bary[0]), F32x8::select(mask, c.bary[1], best.bary[1])];
+    let bary = c.bary();
+    best.bary = [F32x8::select(mask, bary[0], best.bary[0]), F32x8::select(mask, bary[1], best.bary[1])];
     best.prim = U32x8::select(mask, U32x8::splat(id.prim), best.prim);
     best.mesh = U32x8::select(mask, U32x8::splat(id.mesh), best.mesh);
     best.instance = U32x8::select(mask, U32x8::splat(id.instance), best.instance);
@@ -97,7 +98,7 @@ pub(crate) fn filtered(filter: &dyn Opacity, packet: usize, hit: Mask8, c: &Cros
 pub(crate) fn scalar_hit(c: &Crossing, lane: usize, id: TriangleId) -> Hit {
     Hit {
         t: c.t.lane(lane),
-        bary: [c.bary[0].lane(lane), c.bary[1].lane(lane)],
+        bary: c.bary().map(|b| b.lane(lane)),
         prim: id.prim,
         mesh: id.mesh,
         instance: id.instance,

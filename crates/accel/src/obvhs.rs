@@ -110,15 +110,16 @@ impl Obvhs {
         let mut best_index = NO_HIT;
         let mut t_best = t_max;
         let up = beam.points_up();
+        let slack = beam.slack();
         stack.clear();
-        stack.push((t_min, self.tree.root));
+        stack.push((f32::NEG_INFINITY, self.tree.root));
         while let Some((t_near, child)) = stack.pop() {
             // Not ≥: a tie may lie behind this box and have the smaller index.
-            if t_near > t_best {
+            if t_near > t_best + slack {
                 continue;
             }
             match self.tree.open(child) {
-                tree::Opened::Node(node) => push_children(node, beam, up, t_min, t_best, stack),
+                tree::Opened::Node(node) => push_children(node, beam, up, t_min - slack, t_best + slack, stack),
                 tree::Opened::Leaf(leaf) => {
                     let c = intersect(beam, &leaf.corners, F32x8::splat(t_min), F32x8::splat(t_best));
                     for_each_lane(c.mask, |lane| {
@@ -144,11 +145,12 @@ impl Obvhs {
         stack: &mut Vec<Entry>,
     ) -> bool {
         let up = beam.points_up();
+        let slack = beam.slack();
         stack.clear();
-        stack.push((t_min, self.tree.root));
+        stack.push((f32::NEG_INFINITY, self.tree.root));
         while let Some((_, child)) = stack.pop() {
             match self.tree.open(child) {
-                tree::Opened::Node(node) => push_children(node, beam, up, t_min, t_max, stack),
+                tree::Opened::Node(node) => push_children(node, beam, up, t_min - slack, t_max + slack, stack),
                 tree::Opened::Leaf(leaf) => {
                     let c = intersect(beam, &leaf.corners, F32x8::splat(t_min), F32x8::splat(t_max));
                     let blocks = |lane: usize| match filter {
@@ -178,9 +180,8 @@ fn push_children(node: &Node, beam: &Beam, up: [bool; 3], t_min: f32, t_max: f32
     let pick = |up: bool, a: F32x8, b: F32x8| if up { (a, b) } else { (b, a) };
     let (x, y, z) = (pick(up[0], lo.x, hi.x), pick(up[1], lo.y, hi.y), pick(up[2], lo.z, hi.z));
     let [near, far] = beam.slab(Vec3::new(x.0, y.0, z.0), Vec3::new(x.1, y.1, z.1));
-    let near = near.max(F32x8::splat(t_min));
-    let far = far.min(F32x8::splat(t_max));
-    let mut bits = near.le(far).to_bits();
+    let entered = near.le(far) & near.le(F32x8::splat(t_max)) & far.ge(F32x8::splat(t_min));
+    let mut bits = entered.to_bits();
     let near = near.to_array();
     let first = stack.len();
     while bits != 0 {

@@ -11,21 +11,35 @@
 //! **Distance** comes from the plane: t = n·(v₀ − o)/n·d. An origin that lies in the plane up to rounding (|n·(v₀ − o)| below
 //! its error bound) is on the triangle and does not hit it, which is what makes t_min = 0 safe for secondary rays.
 //!
-//! **Agreement.** t is limited to the slab interval of the triangle's own box, grown by [`PAD`] times the farthest the ray
-//! can see. The interval of a box that contains this box contains this interval, in floating point too, because every
-//! step of it is monotonic. So a traversal that enters every box with t_near ≤ min(t_far, t_max) cannot lose a hit.
+//! **Agreement.** A traversal enters a box if the ray meets it, grown by [`PAD`], no farther than [`Beam::slack`] behind the
+//! best hit so far. That loses no hit, because a hit's t is within the slack of where the ray truly is inside the triangle's
+//! box: by the error bound of h/n·d where the ray is not too nearly parallel to the plane ([`STEEP`]), and where it is, by
+//! limiting t to the slab interval of the triangle's own box. That interval lies within the interval of every box around
+//! it, in floating point too, because each of its steps is monotonic. So every backend finds the hit that all triangles in
+//! turn would give, to the last bit.
 
 use gonio_kernel::frame::tangents;
 use gonio_kernel::{F32x8, Mask8, Real, Vec3};
 
-/// Boxes are grown by this times the distance to the farthest corner of the scene. A projected vertex is off by at most
-/// 8·2⁻²⁴ of its distance (one subtraction, three products and sums, and axes that are perpendicular to 2·2⁻²⁴); the slab
-/// arithmetic adds 2·2⁻²⁴. Sixteen leaves room.
-pub const PAD: f32 = 16.0 / 16_777_216.0;
+/// Unit roundoff of `f32`.
+const U: f32 = 1.0 / 16_777_216.0;
 
-/// Error bound of n·(v₀ − o) in units of the sum of its absolute products: three roundings for the edges and the
-/// difference, two for the cross product, three for the dot product, and as much again for higher-order terms' sake.
-const PLANE_ERROR: f32 = 8.0 / 16_777_216.0;
+/// Boxes are grown by this times the distance to the farthest corner of the scene. A projected vertex is off by at most
+/// 8u of its distance (one subtraction, three products and sums, and axes that are perpendicular to 2u); the slab
+/// arithmetic adds 2u. Sixteen leaves room.
+pub const PAD: f32 = 16.0 * U;
+
+/// Error bound of n·(v₀ − o), and of n·d, in units of the sum of its absolute products: three roundings for the edges and
+/// the difference, two for the cross product, three for the dot product.
+const PLANE_ERROR: f32 = 8.0 * U;
+
+/// The ray is steep if |n·d| is at least this times the sum of the absolute products of n. Then h/n·d is off by at most
+/// 2 · 8u/2⁻⁶ of the reach, and the place where the ray meets the plane lies at most 8u/2⁻⁶ of it outside the triangle:
+/// together 1.5·2⁻¹⁴.
+const STEEP: f32 = 1.0 / 64.0;
+
+/// The slack of distances as a part of the reach: 2⁻¹³, see [`STEEP`].
+const SLACK: f32 = 1.0 / 8192.0;
 
 /// Rays with what their tests need, computed once per ray: eight rays, or one ray in all eight lanes.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +51,7 @@ pub struct Beam {
     /// Origin moved towards (near planes) and away from (far planes) the box, by the padding.
     origin_near: Vec3<F32x8>,
     origin_far: Vec3<F32x8>,
+    slack: F32x8,
 }
 
 impl Beam {
@@ -58,6 +73,7 @@ impl Beam {
             inverse: Vec3::new(slope(dir.x), slope(dir.y), slope(dir.z)),
             origin_near: origin + shift,
             origin_far: origin - shift,
+            slack: reach * F32x8::splat(SLACK),
         }
     }
 
@@ -73,6 +89,7 @@ impl Beam {
             inverse: each(self.inverse),
             origin_near: each(self.origin_near),
             origin_far: each(self.origin_far),
+            slack: one(self.slack),
         }
     }
 
@@ -87,6 +104,12 @@ impl Beam {
     #[inline(always)]
     pub fn points_up(&self) -> [bool; 3] {
         [self.inverse.x, self.inverse.y, self.inverse.z].map(|i| i.lane(0) > 0.0)
+    }
+
+    /// By how much a hit's t may lie outside the slab interval of a box around the triangle, for a beam of one ray.
+    #[inline(always)]
+    pub fn slack(&self) -> f32 {
+        self.slack.lane(0)
     }
 
     /// The padded slab interval \[t_near, t_far\] of boxes whose near and far planes are given.
@@ -105,8 +128,17 @@ pub struct Crossing {
     pub mask: Mask8,
     /// Distance.
     pub t: F32x8,
-    /// Barycentric weights of the second and third vertex.
-    pub bary: [F32x8; 2],
+    edges: [F32x8; 3],
+}
+
+impl Crossing {
+    /// Barycentric weights of the second and third vertex; the first has 1 − b1 − b2.
+    #[inline(always)]
+    pub fn bary(&self) -> [F32x8; 2] {
+        let [e0, e1, e2] = self.edges;
+        let scale = (e0 + e1 + e2).recip();
+        [e1 * scale, e2 * scale]
+    }
 }
 
 /// Tests lane by lane whether the ray meets the triangle with t_min ≤ t ≤ t_max.
@@ -137,14 +169,14 @@ impl Edges {
     /// Completes the test; the plane is asked for only if some lane is inside.
     #[inline(always)]
     pub fn cross(&self, beam: &Beam, plane: impl FnOnce() -> Plane<F32x8>, t_min: F32x8, t_max: F32x8) -> Crossing {
-        let mut crossing = Crossing { mask: self.inside, t: F32x8::ZERO, bary: [F32x8::ZERO; 2] };
+        let mut crossing = Crossing { mask: self.inside, t: F32x8::ZERO, edges: self.e };
         if self.inside.to_bits() != 0 {
-            let (t, in_front) = plane().distance(beam, t_min, t_max);
-            let det = self.e[0] + self.e[1] + self.e[2];
-            let inv_det = det.recip();
-            crossing.mask = self.inside & in_front & !det.same(F32x8::ZERO);
+            let [e0, e1, e2] = self.e;
+            let has_area = !(e0 + e1 + e2).same(F32x8::ZERO);
+            let mask = self.inside & has_area;
+            let (t, in_front) = plane().distance(beam, mask, t_min, t_max);
+            crossing.mask = mask & in_front;
             crossing.t = t;
-            crossing.bary = [self.e[1] * inv_det, self.e[2] * inv_det];
         }
         crossing
     }
@@ -205,13 +237,28 @@ impl Plane<f32> {
 }
 
 impl Plane<F32x8> {
-    /// The distance at which the ray meets the plane, limited to the padded box, and whether it lies in front.
+    /// The distance at which the ray meets the plane, and whether it lies in front; only for the lanes of `mask`.
     #[inline(always)]
-    fn distance(&self, beam: &Beam, t_min: F32x8, t_max: F32x8) -> (F32x8, Mask8) {
+    fn distance(&self, beam: &Beam, mask: Mask8, t_min: F32x8, t_max: F32x8) -> (F32x8, Mask8) {
         let to_corner = self.corner - beam.origin;
         let height = self.normal.dot(to_corner);
         let rounding = self.products.dot(to_corner.abs()) * F32x8::splat(PLANE_ERROR);
-        let off_plane = height.abs().gt(rounding);
+        let mut ok = height.abs().gt(rounding);
+        let fall = self.normal.dot(beam.dir);
+        let mut t = height / fall;
+        let steepest = (self.products.x + self.products.y + self.products.z) * F32x8::splat(STEEP);
+        let shallow = mask & ok & !fall.abs().ge(steepest);
+        if shallow.to_bits() != 0 {
+            let [t_near, t_far] = self.own_slab(beam);
+            t = F32x8::select(shallow, t.max(t_near).min(t_far), t);
+            ok = ok & (!shallow | t_near.le(t_far));
+        }
+        (t, ok & t.ge(t_min) & t.le(t_max))
+    }
+
+    /// The slab interval of the triangle's own box.
+    #[inline(always)]
+    fn own_slab(&self, beam: &Beam) -> [F32x8; 2] {
         let order = |i: F32x8, lo: F32x8, hi: F32x8| {
             let up = i.gt(F32x8::ZERO);
             (F32x8::select(up, lo, hi), F32x8::select(up, hi, lo))
@@ -219,8 +266,6 @@ impl Plane<F32x8> {
         let x = order(beam.inverse.x, self.lo.x, self.hi.x);
         let y = order(beam.inverse.y, self.lo.y, self.hi.y);
         let z = order(beam.inverse.z, self.lo.z, self.hi.z);
-        let [t_near, t_far] = beam.slab(Vec3::new(x.0, y.0, z.0), Vec3::new(x.1, y.1, z.1));
-        let t = (height / self.normal.dot(beam.dir)).max(t_near).min(t_far);
-        (t, off_plane & t_near.le(t_far) & t.ge(t_min) & t.le(t_max))
+        beam.slab(Vec3::new(x.0, y.0, z.0), Vec3::new(x.1, y.1, z.1))
     }
 }

@@ -60,6 +60,9 @@ pub(crate) struct Args {
     /// Print what each instrument proves, and run nothing
     #[arg(long)]
     list: bool,
+    /// Adds one check that fails: proves that a failure reaches the table, the report and the exit code
+    #[arg(long, hide = true)]
+    plant_failure: bool,
 }
 
 fn seed(text: &str) -> Result<u64, String> {
@@ -105,6 +108,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     validate_kernel(&options, &mut |check| sink(at_half_the_budget(check)));
     let pictures = scenes::run(&options, &args.out, &mut sink)?;
     census::run(&options, &mut sink);
+    if args.plant_failure {
+        sink(planted_failure());
+    }
     if let Some(spinner) = spinner {
         spinner.finish_and_clear();
     }
@@ -135,6 +141,19 @@ fn at_half_the_budget(mut check: Check) -> Check {
         check.outcome = if check.measured >= check.limit { Outcome::Passed } else { Outcome::Failed };
     }
     check
+}
+
+fn planted_failure() -> Check {
+    Check {
+        instrument: "planted-failure".to_owned(),
+        subject: "asked for by --plant-failure".to_owned(),
+        outcome: Outcome::Failed,
+        measured: 2.0,
+        limit: 1.0,
+        meaning: "failures ≤".to_owned(),
+        detail: "not a measurement".to_owned(),
+        seconds: 0.0,
+    }
 }
 
 fn spinner() -> Option<ProgressBar> {

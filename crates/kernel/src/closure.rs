@@ -168,9 +168,8 @@ mod tests {
             let (wo, wi) = (random.above(), random.above());
             let value = Closure::new(&surface, wo).eval(wi);
             let (a, b) = (matte().eval(wo, wi), metal().eval(wo, wi));
-            let shares = [0.5 * matte().albedo_estimate(wo).luminance(), 0.25 * 0.5, 0.75 * {
-                metal().albedo_estimate(wo).luminance()
-            }];
+            let luminance = |lobe: &dyn Lobe<f32>| lobe.albedo_estimate(wo).luminance();
+            let shares = [0.5 * luminance(&matte()), 0.25 * luminance(&mirror()), 0.75 * luminance(&metal())];
             let sum: f32 = shares.iter().sum();
             let pdf = (shares[0] * a.pdf + shares[2] * b.pdf) / sum;
             assert!(close((value.pdf / pdf).into(), 1.0, 1e-5), "{value:?} and {pdf}");

@@ -74,11 +74,9 @@ impl<R: Real> Fresnel<R> {
     #[inline(always)]
     pub fn reflectance(&self, cos_o: R) -> Rgb<R> {
         match *self {
-            Self::Conductor { eta, k } => Rgb::new(
-                conductor(cos_o, eta.r, k.r),
-                conductor(cos_o, eta.g, k.g),
-                conductor(cos_o, eta.b, k.b),
-            ),
+            Self::Conductor { eta, k } => {
+                Rgb::new(conductor(cos_o, eta.r, k.r), conductor(cos_o, eta.g, k.g), conductor(cos_o, eta.b, k.b))
+            }
             Self::Schlick { f0 } => f0.map(|f0| schlick(cos_o, f0)),
         }
     }

@@ -54,3 +54,8 @@ pub use real::{Mask, Precision, Real};
 pub use rgb::Rgb;
 pub use surface::{Alpha, Roughness, Surface};
 pub use vec3::Vec3;
+
+/// Runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

@@ -101,6 +101,7 @@ pub trait Real:
     }
     /// Neither NaN nor infinite.
     #[inline(always)]
+    #[allow(clippy::eq_op)]
     fn is_finite(self) -> Self::Mask {
         // inf − inf and NaN − NaN are NaN, which equals nothing.
         (self - self).same(Self::ZERO)

@@ -71,9 +71,8 @@ impl<R: Real> Surface<R> {
     #[inline(always)]
     pub fn domain(&self) -> R::Mask {
         use crate::real::Mask;
-        self.lobes().fold(R::Mask::splat(true), |ok, l| {
-            ok & l.weight.ge(R::ZERO) & l.weight.le(R::ONE) & l.lobe.domain()
-        })
+        self.lobes()
+            .fold(R::Mask::splat(true), |ok, l| ok & l.weight.ge(R::ZERO) & l.weight.le(R::ONE) & l.lobe.domain())
     }
 }
 

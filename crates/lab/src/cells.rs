@@ -13,8 +13,8 @@ use gonio_kernel::Vec3;
 
 const SLABS: usize = 16;
 const SECTORS: usize = 8;
-/// How many cells a lobe of one hemisphere has, with the bin of failures: the usual degrees of freedom plus one.
-pub(crate) const USUAL_BINS: usize = SLABS * SECTORS + SECTORS;
+/// How many bins a lobe of one hemisphere has, with that of failures.
+pub(crate) const USUAL_BINS: usize = SLABS * SECTORS + 1;
 /// Cells hold 128 pilot samples on average, so their probabilities are equal to about 9 %.
 const PILOT: usize = 16_384;
 
@@ -27,6 +27,8 @@ pub(crate) struct Cells {
     slabs: Vec<f64>,
     /// Borders of each slab's sectors as pseudo-angles, from −2 to 2.
     sectors: Vec<Vec<f64>>,
+    /// The same without the ends, in arrays of fixed length, which are searched without a branch.
+    inner: ([f64; SLABS], Vec<[f64; SECTORS - 1]>),
 }
 
 impl Cells {
@@ -50,13 +52,16 @@ impl Cells {
         if let Err(at) = slabs.binary_search_by(|b| b.total_cmp(&1.0)) {
             slabs.insert(at, 1.0);
         }
-        let sectors = slabs.windows(2).map(|slab| {
+        let sectors: Vec<Vec<f64>> = slabs.windows(2).map(|slab| {
             let mut phi: Vec<f64> =
                 points.iter().filter(|p| slab[0] <= p.0 && p.0 < slab[1]).map(|p| p.1).collect();
             phi.sort_by(f64::total_cmp);
             quantiles(&phi, SECTORS, -2.0, 2.0)
-        });
-        Self { azimuth, sectors: sectors.collect(), slabs }
+        }).collect();
+        // Should a quantile lie at the horizon itself, there is one border less.
+        let inner_slabs = std::array::from_fn(|i| *slabs[1..slabs.len() - 1].get(i).unwrap_or(&f64::INFINITY));
+        let inner_sectors = sectors.iter().map(|s| std::array::from_fn(|i| s[i + 1])).collect();
+        Self { azimuth, slabs, sectors, inner: (inner_slabs, inner_sectors) }
     }
 
     /// How many cells there are.
@@ -67,8 +72,23 @@ impl Cells {
     /// The cell of a direction, or none if it is not a direction.
     pub(crate) fn index(&self, wi: Dir) -> Option<usize> {
         let (t, phi) = coordinates(wi, self.azimuth)?;
-        let slab = find(&self.slabs, t);
-        Some(slab * SECTORS + find(&self.sectors[slab], phi))
+        let slab = find(&self.inner.0, t);
+        Some(slab * SECTORS + find(&self.inner.1[slab], phi))
+    }
+
+    /// The width of a typical cell \[rad\], the lesser of its two.
+    pub(crate) fn width(&self) -> f64 {
+        let median = |widths: Vec<f64>| {
+            let mut widths = widths;
+            widths.sort_by(f64::total_cmp);
+            widths[widths.len() / 2]
+        };
+        let sin = |t: f64| (t * (2.0 - t)).sqrt();
+        let along = self.slabs.windows(2).map(|t| (t[1] - t[0]) / sin(0.5 * (t[0] + t[1])));
+        let across = self.slabs.windows(2).zip(&self.sectors).map(|(t, sectors)| {
+            sin(0.5 * (t[0] + t[1])) * median(sectors.windows(2).map(|p| angle(p[1]) - angle(p[0])).collect())
+        });
+        median(along.collect()).min(median(across.collect()))
     }
 
     /// ∫ f_cos dω (three channels), ∫ pdf dω and ∫ f_cos²/pdf dω (three channels) over each cell.
@@ -187,9 +207,9 @@ fn quantiles(sorted: &[f64], n: usize, lo: f64, hi: f64) -> Vec<f64> {
     borders
 }
 
-/// The part that holds x: the last border not above it.
-fn find(borders: &[f64], x: f64) -> usize {
-    borders[1..borders.len() - 1].iter().map(|&b| usize::from(b <= x)).sum()
+/// How many of the borders are not above x.
+fn find<const N: usize>(borders: &[f64; N], x: f64) -> usize {
+    borders.iter().map(|&b| usize::from(b <= x)).sum()
 }
 
 #[cfg(test)]

@@ -184,12 +184,20 @@ impl<R: Scalar> Probe for SurfaceProbe<R> {
         for eight in u.chunks(8) {
             let number = |i: usize| F32x8::new(std::array::from_fn(|l| eight.get(l).map_or(0.0, |u| u[i] as f32)));
             let Sample { wi, event } = closure.sample([number(0), number(1), number(2)]);
-            let value = if event.discrete.to_bits() == 0 { Value::zero() } else { closure.discrete(&event) };
             let (x, y, z) = (wi.x.to_array(), wi.y.to_array(), wi.z.to_array());
-            out.extend((0..eight.len()).map(|l| {
-                let event = lane_event(&event, l);
-                draw(Sample { wi: Vec3::new(x[l], y[l], z[l]), event }, |_| lane_value(&value, l))
-            }));
+            let [failed, discrete, transmitted] = [event.failed, event.discrete, event.transmitted].map(Mask8::to_bits);
+            let value = if discrete == 0 { Value::zero() } else { closure.discrete(&event) };
+            for (l, _) in eight.iter().enumerate() {
+                let is = |mask: u32| (mask >> l) & 1 != 0;
+                let kind = if is(failed) {
+                    Kind::Failed
+                } else if is(discrete) {
+                    Kind::Discrete(worth(lane_value(&value, l)), (event.lobe.to_array()[l], is(transmitted)))
+                } else {
+                    Kind::Continuous
+                };
+                out.push(Draw { wi: widen(Vec3::new(x[l], y[l], z[l])), kind, transmitted: is(transmitted) });
+            }
         }
     }
     fn single(&self) -> bool {

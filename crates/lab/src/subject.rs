@@ -93,6 +93,7 @@ impl<'a> Subject<'a> {
             probe: probe.as_ref(),
             reference: self.double.as_deref().unwrap_or(probe.as_ref()),
             claims: self.claims,
+            has_single: self.single.is_some(),
             prepared: &self.prepared,
         })
     }
@@ -107,6 +108,8 @@ pub(crate) struct View<'a> {
     pub(crate) reference: &'a dyn Probe,
     /// What is claimed of it.
     pub(crate) claims: Claims,
+    /// Whether the subject has a form in `f32`.
+    pub(crate) has_single: bool,
     prepared: &'a [OnceLock<Prepared>; VIEWS.len()],
 }
 

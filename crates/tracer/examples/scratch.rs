@@ -25,7 +25,7 @@ fn main() {
         }
     }
     let materials = (0..4).map(|i| Material { name: names[i].into(), lobes: vec![LobeSpec { weight: 1.0, model: Model::Diffuse { base_color: Color::Constant(Rgb::from(cols[i])) } }], emission: if i == 3 { Rgb::new(18.387, 13.9873, 6.75357) } else { Rgb::zero() }, two_sided: i != 3 }).collect();
-    let scene = Scene { film: FilmSettings { width: 512, height: 512, spp, exposure: 0.0 }, camera: Camera { origin: DVec3::new(0., 0., 3.9), target: DVec3::ZERO, up: DVec3::Y, vfov: 39.3077 }, integrator: IntegratorSettings { max_depth: 8, russian_roulette: false, seed: 0 }, materials, textures: vec![], meshes: vec![mesh], instances: vec![Instance { name: "c".into(), mesh: 0, transform: DAffine3::IDENTITY }], environment: Rgb::zero(), warnings: vec![] };
+    let scene = Scene { film: FilmSettings { width: 128, height: 128, spp, exposure: 0.0 }, camera: Camera { origin: DVec3::new(0., 0., 3.9), target: DVec3::ZERO, up: DVec3::Y, vfov: 39.3077 }, integrator: IntegratorSettings { max_depth: 8, russian_roulette: false, seed: 0 }, materials, textures: vec![], meshes: vec![mesh], instances: vec![Instance { name: "c".into(), mesh: 0, transform: DAffine3::IDENTITY }], environment: Rgb::zero(), warnings: vec![] };
     let world = World::new(&scene).unwrap();
     let accel = backend.build(world.geometry());
     let mut s = RenderSettings::of(&scene, &world);

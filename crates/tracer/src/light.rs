@@ -5,7 +5,7 @@
 //! half of the samples; an absent kind has probability exactly 0. The environment is sampled by cosine about the shading
 //! normal.
 
-use gonio_kernel::{F32x8, Real, Rgb, U32x8, Vec3};
+use gonio_kernel::{F32x8, Real, Rgb, U32x8, Vec3, each_lane};
 
 /// An emitting triangle.
 #[derive(Clone, Copy, Debug)]
@@ -65,28 +65,32 @@ impl Lights {
     /// Eight emitters for two random words each.
     #[inline(always)]
     pub(crate) fn pick(&self, place: U32x8, toss: F32x8) -> Emitters {
-        let chosen = U32x8::from_fn(|lane| {
-            // A 32-bit word times the count: every emitter gets its share to 2⁻³² of the whole.
-            let slot = ((u64::from(place.lane(lane)) * self.alias.len() as u64) >> 32) as u32;
-            let (keep, other) = self.alias[slot as usize];
-            if toss.lane(lane) < keep { slot } else { other }
-        });
-        let emitter = |lane: usize| -> &Emitter { &self.emitters[chosen.lane(lane) as usize] };
+        let emitters = each_lane(|lane| &self.emitters[self.slot(place.lane(lane), toss.lane(lane))]);
         let corner = |c: usize| {
             Vec3::new(
-                F32x8::from_fn(|l| emitter(l).corners[c].x),
-                F32x8::from_fn(|l| emitter(l).corners[c].y),
-                F32x8::from_fn(|l| emitter(l).corners[c].z),
+                F32x8::from_fn(|l| emitters[l].corners[c].x),
+                F32x8::from_fn(|l| emitters[l].corners[c].y),
+                F32x8::from_fn(|l| emitters[l].corners[c].z),
             )
         };
         Emitters {
             corners: [corner(0), corner(1), corner(2)],
             radiance: Rgb::new(
-                F32x8::from_fn(|l| emitter(l).radiance.r),
-                F32x8::from_fn(|l| emitter(l).radiance.g),
-                F32x8::from_fn(|l| emitter(l).radiance.b),
+                F32x8::from_fn(|l| emitters[l].radiance.r),
+                F32x8::from_fn(|l| emitters[l].radiance.g),
+                F32x8::from_fn(|l| emitters[l].radiance.b),
             ),
         }
+    }
+}
+
+impl Lights {
+    /// An emitter by its power: a 32-bit word times the count gives every slot its share to 2⁻³² of the whole.
+    #[inline(always)]
+    fn slot(&self, place: u32, toss: f32) -> usize {
+        let slot = ((u64::from(place) * self.alias.len() as u64) >> 32) as usize;
+        let (keep, other) = self.alias[slot];
+        if toss < keep { slot } else { other as usize }
     }
 }
 

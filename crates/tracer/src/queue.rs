@@ -5,7 +5,7 @@
 //! new blocks in that order. Dead lanes are left behind by the next sort.
 
 use gonio_accel::{Hit8, NO_HIT, Ray8};
-use gonio_kernel::{F32x8, Mask8, Rgb, U32x8, each_lane};
+use gonio_kernel::{F32x8, Mask8, Rgb, U32x8, Vec3, each_lane};
 
 /// What eight paths carry besides their rays.
 #[derive(Clone, Copy, Debug)]
@@ -27,12 +27,17 @@ pub(crate) struct Queue {
     pub(crate) paths: Vec<Paths>,
 }
 
-/// Shadow rays, and what arrives if nothing is in the way.
+/// Shadow rays, and what arrives if nothing is in the way. Only about half of the lanes that are shaded have something to
+/// ask for, so lanes are packed as they come.
 #[derive(Debug, Default)]
 pub(crate) struct ShadowQueue {
     pub(crate) rays: Vec<Ray8>,
     pub(crate) arriving: Vec<Rgb<F32x8>>,
-    pub(crate) path: Vec<U32x8>,
+    pub(crate) path: Vec<[u32; F32x8::LANES]>,
+    /// The block that is being filled: origin, direction, t_max, light; eleven lanes of numbers with the path.
+    open: [[f32; F32x8::LANES]; 10],
+    open_path: [u32; F32x8::LANES],
+    open_lanes: usize,
 }
 
 /// Live lanes in the order of their keys.
@@ -62,6 +67,46 @@ impl ShadowQueue {
         self.rays.clear();
         self.arriving.clear();
         self.path.clear();
+        self.open_lanes = 0;
+    }
+
+    /// Appends the lanes of `mask`.
+    #[inline(always)]
+    pub(crate) fn push(
+        &mut self,
+        mask: Mask8,
+        (origin, dir, t_max): (Vec3<F32x8>, Vec3<F32x8>, F32x8),
+        light: Rgb<F32x8>,
+        path: &[u32; F32x8::LANES],
+    ) {
+        let fields = [origin.x, origin.y, origin.z, dir.x, dir.y, dir.z, t_max, light.r, light.g, light.b];
+        let fields = fields.map(F32x8::to_array);
+        let mut bits = mask.to_bits();
+        while bits != 0 {
+            let lane = bits.trailing_zeros() as usize % F32x8::LANES;
+            bits &= bits - 1;
+            let to = self.open_lanes % F32x8::LANES;
+            for (open, field) in self.open.iter_mut().zip(&fields) {
+                open[to] = field[lane];
+            }
+            self.open_path[to] = path[lane];
+            self.open_lanes = to + 1;
+            if self.open_lanes == F32x8::LANES {
+                self.close();
+            }
+        }
+    }
+
+    /// Completes the block that is being filled; to be called before the rays are cast.
+    pub(crate) fn close(&mut self) {
+        if self.open_lanes > 0 {
+            let [ox, oy, oz, dx, dy, dz, t_max, r, g, b] = self.open.map(F32x8::new);
+            let mask = Mask8::first(self.open_lanes);
+            self.rays.push(Ray8 { t_max, mask, ..Ray8::new(Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz)) });
+            self.arriving.push(Rgb::new(r, g, b));
+            self.path.push(self.open_path);
+            self.open_lanes = 0;
+        }
     }
 }
 
@@ -174,7 +219,7 @@ impl<'a> Batch<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gonio_kernel::{Real, Vec3};
+    use gonio_kernel::Real;
 
     #[test]
     fn the_order_is_by_key_then_lane_and_leaves_out_the_dead() {

@@ -291,13 +291,14 @@ impl TileWorker {
                 from = to;
             }
 
+            self.shadow.close();
             self.blocked.resize(self.shadow.rays.len(), Mask8::first(0));
             accel.occluded(RayKind::Incoherent, &self.shadow.rays, None, &mut self.blocked);
             for (((ray, blocked), light), path) in
                 self.shadow.rays.iter().zip(&self.blocked).zip(&self.shadow.arriving).zip(&self.shadow.path)
             {
                 stats.shadow_rays += u64::from(ray.mask.to_bits().count_ones());
-                tile.gather(path.to_array(), ray.mask & !*blocked, *light);
+                tile.gather(path, ray.mask & !*blocked, *light);
             }
             std::mem::swap(&mut self.queue, &mut self.next);
         }

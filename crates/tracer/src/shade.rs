@@ -9,7 +9,7 @@ use crate::material::lane_surface;
 use crate::plan::Plan;
 use crate::point::{ShadingPoints, SurfacePoint};
 use crate::queue::{Batch, Paths, Queue, ShadowQueue};
-use crate::sampler::{Purpose, Random4, Sampler};
+use crate::sampler::{Purpose, Sampler};
 use crate::world::{World, splat_rgb};
 use gonio_accel::Ray8;
 use gonio_kernel::warp::{pdf_cosine_hemisphere, sample_cosine_hemisphere, sample_uniform_triangle};
@@ -45,7 +45,7 @@ pub(crate) struct Tile<'a> {
 impl Tile<'_> {
     /// Adds light to those lanes' paths.
     #[inline(always)]
-    pub(crate) fn gather(&mut self, path: [u32; F32x8::LANES], mask: Mask8, light: Rgb<F32x8>) {
+    pub(crate) fn gather(&mut self, path: &[u32; F32x8::LANES], mask: Mask8, light: Rgb<F32x8>) {
         let (bits, [r, g, b]) = (mask.to_bits(), [light.r, light.g, light.b].map(F32x8::to_array));
         for lane in 0..F32x8::LANES {
             if bits >> lane & 1 != 0 {
@@ -53,13 +53,6 @@ impl Tile<'_> {
                 *sum = [sum[0] + r[lane], sum[1] + g[lane], sum[2] + b[lane]];
             }
         }
-    }
-
-    #[inline(always)]
-    fn random(&self, ctx: &Context, path: [u32; F32x8::LANES], bounce: u32, purpose: Purpose) -> Random4 {
-        let pixel = U32x8::from_fn(|l| self.pixel[path[l] as usize]);
-        let sample = U32x8::from_fn(|l| self.sample[path[l] as usize]);
-        ctx.sampler.draw(pixel, sample, bounce, purpose)
     }
 }
 
@@ -69,12 +62,17 @@ struct Incoming {
     throughput: Rgb<F32x8>,
     pdf: F32x8,
     path: [u32; F32x8::LANES],
+    pixel: U32x8,
+    sample: U32x8,
 }
 
 impl Incoming {
     #[inline(always)]
-    fn new(batch: &Batch) -> Self {
+    fn new(batch: &Batch, tile: &Tile) -> Self {
+        let path = batch.path_numbers();
         Self {
+            pixel: U32x8::from_fn(|l| tile.pixel[path[l] as usize]),
+            sample: U32x8::from_fn(|l| tile.sample[path[l] as usize]),
             dir: Vec3::new(batch.ray(|r| &r.dir.x), batch.ray(|r| &r.dir.y), batch.ray(|r| &r.dir.z)),
             throughput: Rgb::new(
                 batch.path(|p| &p.throughput.r),
@@ -82,7 +80,7 @@ impl Incoming {
                 batch.path(|p| &p.throughput.b),
             ),
             pdf: batch.path(|p| &p.pdf),
-            path: batch.path_numbers(),
+            path,
         }
     }
 
@@ -96,10 +94,10 @@ impl Incoming {
 /// Paths that left the world receive the environment.
 #[inline(always)]
 pub(crate) fn miss(ctx: &Context, batch: &Batch, tile: &mut Tile) {
-    let incoming = Incoming::new(batch);
+    let incoming = Incoming::new(batch, tile);
     let weight = incoming.weight(batch.path(|p| &p.pdf_environment));
     let radiance = splat_rgb(ctx.world.lights.environment());
-    tile.gather(incoming.path, batch.live, incoming.throughput * radiance * weight);
+    tile.gather(&incoming.path, batch.live, incoming.throughput * radiance * weight);
 }
 
 /// Paths that met materials of one variant: emission, light sample, scattering. `depth` counts the scattering events
@@ -113,7 +111,7 @@ pub(crate) fn hit(
     shadow: &mut ShadowQueue,
     next: &mut Queue,
 ) -> u32 {
-    let incoming = Incoming::new(batch);
+    let incoming = Incoming::new(batch, tile);
     let wo = -incoming.dir;
     let points = ShadingPoints::new(ctx.world, ctx.plan, batch, wo);
     if ctx.plan.area_lights {
@@ -149,7 +147,7 @@ pub(crate) fn hit(
 
     let lights = &ctx.world.lights;
     if ctx.plan.area_lights || ctx.plan.environment {
-        let u = tile.random(ctx, incoming.path, depth, Purpose::Light);
+        let u = ctx.sampler.draw(incoming.pixel, incoming.sample, depth, Purpose::Light);
         let toss = u.unit(0);
         let p_environment = F32x8::splat(lights.environment_probability());
         let ask_environment = toss.lt(p_environment);
@@ -172,13 +170,11 @@ pub(crate) fn hit(
             let above = points.normal.dot(asked.wi).gt(F32x8::ZERO);
             let mask = mask & asked.mask & above & arriving.largest().gt(F32x8::ZERO);
             if mask.any() {
-                shadow.rays.push(Ray8 { t_max: asked.t_max, mask, ..Ray8::new(origin, asked.wi) });
-                shadow.arriving.push(arriving);
-                shadow.path.push(U32x8::new(incoming.path));
+                shadow.push(mask, (origin, asked.wi, asked.t_max), arriving, &incoming.path);
             }
         }
     }
-    scatter(ctx, depth, live, &incoming, &points, &closure, origin, tile, next);
+    scatter(ctx, depth, live, &incoming, &points, &closure, origin, next);
     live.to_bits().count_ones()
 }
 
@@ -197,7 +193,7 @@ fn receive_emission(ctx: &Context, batch: &Batch, incoming: &Incoming, points: &
     let pdf_area = emission.luminance() * F32x8::splat(ctx.world.lights.pdf_area_per_luminance());
     let pdf_light = pdf_area * points.t * points.t / points.cos_geometric;
     let mask = batch.live & points.front & emission.largest().gt(F32x8::ZERO);
-    tile.gather(incoming.path, mask, incoming.throughput * emission * incoming.weight(pdf_light));
+    tile.gather(&incoming.path, mask, incoming.throughput * emission * incoming.weight(pdf_light));
 }
 
 /// A direction in which light is asked for.
@@ -261,10 +257,9 @@ fn scatter(
     points: &ShadingPoints,
     closure: &Closure<F32x8>,
     origin: Vec3<F32x8>,
-    tile: &Tile,
     next: &mut Queue,
 ) {
-    let u = tile.random(ctx, incoming.path, depth, Purpose::Scatter);
+    let u = ctx.sampler.draw(incoming.pixel, incoming.sample, depth, Purpose::Scatter);
     let sample = closure.sample([u.unit(0), u.unit(1), u.unit(2)]);
     let mut value = closure.eval(sample.wi);
     let mut continuous = live;

@@ -30,8 +30,8 @@ struct Row {
     id: TriangleId,
 }
 
-/// A ray's projection of every vertex; three corners each for [`MOST`] triangles.
-type Projected = [[F32x8; 2]; 3 * MOST];
+/// A ray's projection of every vertex: three corners each for [`MOST`] triangles, and room so that a byte is an index.
+type Projected = [[F32x8; 2]; 256];
 
 impl Few {
     /// The list, if the geometry is small enough.
@@ -65,7 +65,7 @@ impl Few {
     }
 
     pub(super) fn closest(&self, rays: &[Ray8], hits: &mut [Hit8]) {
-        let mut projected = [[F32x8::ZERO; 2]; 3 * MOST];
+        let mut projected = [[F32x8::ZERO; 2]; 256];
         for (ray, hit) in rays.iter().zip(hits) {
             let beam = self.project(ray, &mut projected);
             let mut best = Hit8::miss();
@@ -83,7 +83,7 @@ impl Few {
     }
 
     pub(super) fn occluded(&self, rays: &[Ray8], filter: Option<&dyn Opacity>, blocked: &mut [Mask8]) {
-        let mut projected = [[F32x8::ZERO; 2]; 3 * MOST];
+        let mut projected = [[F32x8::ZERO; 2]; 256];
         for ((packet, ray), blocked) in rays.iter().enumerate().zip(blocked) {
             let beam = self.project(ray, &mut projected);
             let mut open = ray.mask;
@@ -107,7 +107,7 @@ impl Few {
 impl Row {
     #[inline(always)]
     fn edges(&self, projected: &Projected) -> Edges {
-        let [a, b, c] = self.corners.map(|v| projected[v as usize % (3 * MOST)]);
+        let [a, b, c] = self.corners.map(|v| projected[v as usize]);
         Edges::new(a, b, c)
     }
 }

@@ -184,9 +184,9 @@ mod tests {
         let drawn = surface::<f64>().sample([0.6, 0.0, 0.8], &[[0.99, 0.5, 0.5]])[0];
         assert_eq!(drawn.happening, Happening::Mirror);
         assert_eq!(drawn.wi, [-0.6, 0.0, 0.8]);
-        // Chosen with probability 0.5·1/(0.5·0.8 + 0.5·1); its weight times that is 0.5.
+        // It is chosen with probability 0.5·1/(0.5·0.8 + 0.5·1) and returns 0.5·1 of the light on the whole.
         assert!((drawn.answer.pdf - 0.5 / 0.9).abs() < 1e-15);
-        assert!((drawn.answer.f_cos[0] - 0.5 * 0.5 / 0.9).abs() < 1e-15);
-        assert!((drawn.weight[0] - 0.5).abs() < 1e-15);
+        assert!((drawn.answer.f_cos[0] - 0.5).abs() < 1e-15);
+        assert!((drawn.weight[0] - 0.9).abs() < 1e-15);
     }
 }

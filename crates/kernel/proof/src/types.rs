@@ -65,14 +65,16 @@ macro_rules! types {
 /// What only lanes have: a count of active lanes and a lane's number are as unknown as any input.
 #[unsafe(no_mangle)]
 #[inline(never)]
-fn masks_of_lanes(count: usize, lane: usize, bits: u32) -> (bool, u32, U32x8) {
+fn lanes(count: usize, lane: usize, bits: u32, table: &[f32; 8]) -> (bool, u32, U32x8, f32) {
     let mask = Mask8::first(count) | Mask8::from_bits(bits);
-    (mask.lane(lane) & mask.any(), mask.to_bits(), U32x8::splat(bits) >> bits)
+    let reals = F32x8::from_fn(|i| table[(i + lane) & 7]);
+    let truth = mask.lane(lane) & mask.any();
+    (truth, mask.to_bits(), U32x8::splat(bits) >> bits, reals.lane(lane))
 }
 
 pub(crate) fn prove() {
     types!(f32);
     types!(f64);
     types!(F32x8);
-    black_box(masks_of_lanes(black_box(5), black_box(9), black_box(77)));
+    black_box(lanes(black_box(5), black_box(9), black_box(77), black_box(&[0.5; 8])));
 }

@@ -23,7 +23,7 @@ struct HalfOpen;
 
 impl Opacity for HalfOpen {
     fn blocks(&self, ray: usize, hit: &Hit) -> bool {
-        (hit.prim ^ hit.instance ^ (ray as u32)).count_ones() % 2 == 0
+        (hit.prim ^ hit.instance ^ (ray as u32)).count_ones().is_multiple_of(2)
     }
 }
 
