@@ -1,3 +1,7 @@
 //! The tests that cross crates: one binary, one module per theme.
 
+mod backends; // Every backend finds the hit that brute finds, and nothing leaks.
+mod mitsuba; // The Cornell box is the picture that Mitsuba 3 makes.
+mod pictures; // Threads, crops, plans, backends, scale and place never change a picture.
 mod scene_files; // Scene files, good and bad: what loads, what it becomes, and the very words of each refusal.
+mod support; // Shared: where data lies, small scenes, random numbers.

@@ -13,8 +13,8 @@
 //!
 //! **Agreement.** A traversal enters a box if the ray meets it, grown by [`PAD`], no farther than [`Beam::slack`] behind the
 //! best hit so far. That loses no hit, because a hit's t is within the slack of where the ray truly is inside the triangle's
-//! box: by the error bound of h/n·d where the ray is not too nearly parallel to the plane ([`STEEP`]), and where it is, by
-//! limiting t to the slab interval of the triangle's own box. That interval lies within the interval of every box around
+//! box: by the error bound of h/n·d where the ray is not too nearly parallel to the plane ([`STEEP`]), and where it is, or
+//! where an edge function is zero, by limiting t to the slab interval of the triangle's own box. That interval lies within the interval of every box around
 //! it, in floating point too, because each of its steps is monotonic. So every backend finds the hit that all triangles in
 //! turn would give, to the last bit.
 
@@ -48,9 +48,8 @@ pub struct Beam {
     dir: Vec3<F32x8>,
     across: [Vec3<F32x8>; 2],
     inverse: Vec3<F32x8>,
-    /// Origin moved towards (near planes) and away from (far planes) the box, by the padding.
-    origin_near: Vec3<F32x8>,
-    origin_far: Vec3<F32x8>,
+    /// The padding, as a distance along the ray for each axis.
+    pad: Vec3<F32x8>,
     slack: F32x8,
 }
 
@@ -64,15 +63,13 @@ impl Beam {
         let pad = reach * F32x8::splat(PAD);
         // A direction without an x never leaves its slab: a large finite slope says so without 0·∞.
         let slope = |d: F32x8| d.abs().recip().min(F32x8::splat(1e30)).copysign(d);
-        let ahead = |d: F32x8| pad.copysign(d);
-        let shift = Vec3::new(ahead(dir.x), ahead(dir.y), ahead(dir.z));
+        let inverse = Vec3::new(slope(dir.x), slope(dir.y), slope(dir.z));
         Self {
             origin,
             dir,
             across: [u, v],
-            inverse: Vec3::new(slope(dir.x), slope(dir.y), slope(dir.z)),
-            origin_near: origin + shift,
-            origin_far: origin - shift,
+            inverse,
+            pad: inverse.abs() * pad,
             slack: reach * F32x8::splat(SLACK),
         }
     }
@@ -87,8 +84,7 @@ impl Beam {
             dir: each(self.dir),
             across: self.across.map(each),
             inverse: each(self.inverse),
-            origin_near: each(self.origin_near),
-            origin_far: each(self.origin_far),
+            pad: each(self.pad),
             slack: one(self.slack),
         }
     }
@@ -115,9 +111,12 @@ impl Beam {
     /// The padded slab interval \[t_near, t_far\] of boxes whose near and far planes are given.
     #[inline(always)]
     pub fn slab(&self, near: Vec3<F32x8>, far: Vec3<F32x8>) -> [F32x8; 2] {
-        let enter = (near - self.origin_near).mul_each(self.inverse);
-        let leave = (far - self.origin_far).mul_each(self.inverse);
-        [enter.x.max(enter.y).max(enter.z), leave.x.min(leave.y).min(leave.z)]
+        // The difference first: beside a large coordinate the padding would be lost.
+        let (near, far) = (near - self.origin, far - self.origin);
+        let (i, pad) = (self.inverse, self.pad);
+        let enter = [near.x.mul_add(i.x, -pad.x), near.y.mul_add(i.y, -pad.y), near.z.mul_add(i.z, -pad.z)];
+        let leave = [far.x.mul_add(i.x, pad.x), far.y.mul_add(i.y, pad.y), far.z.mul_add(i.z, pad.z)];
+        [enter[0].max(enter[1]).max(enter[2]), leave[0].min(leave[1]).min(leave[2])]
     }
 }
 
@@ -153,7 +152,8 @@ pub fn intersect(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: F32x8, t_max: F
 #[derive(Clone, Copy, Debug)]
 pub struct Edges {
     e: [F32x8; 3],
-    inside: Mask8,
+    least: F32x8,
+    most: F32x8,
 }
 
 impl Edges {
@@ -162,19 +162,21 @@ impl Edges {
     pub fn new(p0: [F32x8; 2], p1: [F32x8; 2], p2: [F32x8; 2]) -> Self {
         let edge = |p: [F32x8; 2], q: [F32x8; 2]| p[0] * q[1] - p[1] * q[0];
         let e = [edge(p1, p2), edge(p2, p0), edge(p0, p1)];
-        let inside = e[0].min(e[1]).min(e[2]).ge(F32x8::ZERO) | e[0].max(e[1]).max(e[2]).le(F32x8::ZERO);
-        Self { e, inside }
+        Self { e, least: e[0].min(e[1]).min(e[2]), most: e[0].max(e[1]).max(e[2]) }
     }
 
     /// Completes the test; the plane is asked for only if some lane is inside.
     #[inline(always)]
     pub fn cross(&self, beam: &Beam, plane: impl FnOnce() -> Plane<F32x8>, t_min: F32x8, t_max: F32x8) -> Crossing {
-        let mut crossing = Crossing { mask: self.inside, t: F32x8::ZERO, edges: self.e };
-        if self.inside.to_bits() != 0 {
+        let inside = self.least.ge(F32x8::ZERO) | self.most.le(F32x8::ZERO);
+        let mut crossing = Crossing { mask: inside, t: F32x8::ZERO, edges: self.e };
+        if inside.to_bits() != 0 {
             let [e0, e1, e2] = self.e;
             let has_area = !(e0 + e1 + e2).same(F32x8::ZERO);
-            let mask = self.inside & has_area;
-            let (t, in_front) = plane().distance(beam, mask, t_min, t_max);
+            let mask = inside & has_area;
+            // A zero may be the rounding of a tiny triangle far to the side, where it says nothing.
+            let on_edge = mask & !(self.least.gt(F32x8::ZERO) | self.most.lt(F32x8::ZERO));
+            let (t, in_front) = plane().distance(beam, mask, on_edge, t_min, t_max);
             crossing.mask = mask & in_front;
             crossing.t = t;
         }
@@ -237,9 +239,10 @@ impl Plane<f32> {
 }
 
 impl Plane<F32x8> {
-    /// The distance at which the ray meets the plane, and whether it lies in front; only for the lanes of `mask`.
+    /// The distance at which the ray meets the plane, and whether it lies in front; only for the lanes of `mask`. Lanes
+    /// that are shallow or `doubtful` must meet the triangle's box.
     #[inline(always)]
-    fn distance(&self, beam: &Beam, mask: Mask8, t_min: F32x8, t_max: F32x8) -> (F32x8, Mask8) {
+    fn distance(&self, beam: &Beam, mask: Mask8, doubtful: Mask8, t_min: F32x8, t_max: F32x8) -> (F32x8, Mask8) {
         let to_corner = self.corner - beam.origin;
         let height = self.normal.dot(to_corner);
         let rounding = self.products.dot(to_corner.abs()) * F32x8::splat(PLANE_ERROR);
@@ -247,7 +250,7 @@ impl Plane<F32x8> {
         let fall = self.normal.dot(beam.dir);
         let mut t = height / fall;
         let steepest = (self.products.x + self.products.y + self.products.z) * F32x8::splat(STEEP);
-        let shallow = mask & ok & !fall.abs().ge(steepest);
+        let shallow = doubtful | (mask & ok & !fall.abs().ge(steepest));
         if shallow.to_bits() != 0 {
             let [t_near, t_far] = self.own_slab(beam);
             t = F32x8::select(shallow, t.max(t_near).min(t_far), t);

@@ -131,9 +131,11 @@ impl<'a, R: Real> Unguarded<'a, R> {
         for ((l, &p), index) in self.surface.lobes().zip(&self.p).zip(0..) {
             let mine = R::int_same(event.lobe, R::int(index)) & event.discrete & !event.failed;
             if mine.any() {
-                let value = l.lobe.discrete(self.wo, event).or_zero(mine);
-                sum.f_cos += value.f_cos * (l.weight * p);
-                sum.pdf += p * value.pdf;
+                let value = l.lobe.discrete(self.wo, event);
+                // The strength is wR whatever p is: divided by the probability it weighs wR/p. Masked last, so that a lane
+                // with a p that is not finite leaves its neighbours alone.
+                sum.f_cos += (value.f_cos * l.weight).or_zero(mine);
+                sum.pdf += (p * value.pdf).or_zero(mine);
             }
         }
         sum

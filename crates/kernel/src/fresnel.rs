@@ -31,16 +31,17 @@ pub fn conductor<R: Real>(cos_o: R, eta: R, k: R) -> R {
     let k2 = k * k;
     let t0 = eta2 - k2 - sin2;
     let a2b2 = t0.mul_add(t0, R::lit(4.0) * eta2 * k2).sqrt();
-    // a² = (|…| + t0)/2 cancels where t0 < 0; there a² = 2η²k²/(|…| − t0) is the same without the subtraction.
-    let sum = a2b2 + t0.abs();
-    let small = R::lit(2.0) * eta2 * k2 / sum;
-    let a2 = R::select(t0.lt(R::ZERO), small, sum * R::lit(0.5));
-    let two_a_cos = R::lit(2.0) * a2.max(R::ZERO).sqrt() * cos_o;
-    let p = a2b2 + cos2;
-    let q = cos2.mul_add(a2b2, sin2 * sin2);
-    let r = two_a_cos * sin2;
-    // (R⊥ + R∥)/2 = R⊥ · ½(1 + (q − r)/(q + r)) = R⊥ · q/(q + r): one division for both polarisations.
-    let reflectance = (p - two_a_cos) * q / ((p + two_a_cos) * (q + r));
+    // a² = (|…| + t0)/2 cancels where t0 < 0; there a = ηk/s with s² = (|…| − t0)/2. Both are written a = n/w, and w is
+    // multiplied through, so that one division serves both polarisations and both cases.
+    let s = ((a2b2 + t0.abs()) * R::lit(0.5)).sqrt();
+    let inside = t0.lt(R::ZERO);
+    let n = R::select(inside, eta * k, s);
+    let w = R::select(inside, s, R::ONE);
+    let two_n_cos = R::lit(2.0) * n * cos_o;
+    let p = (a2b2 + cos2) * w;
+    let q = cos2.mul_add(a2b2, sin2 * sin2) * w;
+    // (R⊥ + R∥)/2 = R⊥ · ½(1 + (q − r)/(q + r)) = R⊥ · q/(q + r)
+    let reflectance = (p - two_n_cos) * q / ((p + two_n_cos) * two_n_cos.mul_add(sin2, q));
     reflectance.max(R::ZERO).min(R::ONE)
 }
 

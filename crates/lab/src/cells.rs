@@ -34,7 +34,9 @@ pub(crate) struct Cells {
 impl Cells {
     /// Cells that follow what `probe` samples at wo.
     pub(crate) fn following(probe: &dyn Probe, wo: Dir, random: &mut Random) -> Self {
-        let azimuth = if wo.x == 0.0 && wo.y == 0.0 { (1.0, 0.0) } else {
+        let azimuth = if wo.x == 0.0 && wo.y == 0.0 {
+            (1.0, 0.0)
+        } else {
             let sin = wo.x.hypot(wo.y);
             (-wo.x / sin, -wo.y / sin)
         };
@@ -52,12 +54,15 @@ impl Cells {
         if let Err(at) = slabs.binary_search_by(|b| b.total_cmp(&1.0)) {
             slabs.insert(at, 1.0);
         }
-        let sectors: Vec<Vec<f64>> = slabs.windows(2).map(|slab| {
-            let mut phi: Vec<f64> =
-                points.iter().filter(|p| slab[0] <= p.0 && p.0 < slab[1]).map(|p| p.1).collect();
-            phi.sort_by(f64::total_cmp);
-            quantiles(&phi, SECTORS, -2.0, 2.0)
-        }).collect();
+        let sectors: Vec<Vec<f64>> = slabs
+            .windows(2)
+            .map(|slab| {
+                let mut phi: Vec<f64> =
+                    points.iter().filter(|p| slab[0] <= p.0 && p.0 < slab[1]).map(|p| p.1).collect();
+                phi.sort_by(f64::total_cmp);
+                quantiles(&phi, SECTORS, -2.0, 2.0)
+            })
+            .collect();
         // Should a quantile lie at the horizon itself, there is one border less.
         let inner_slabs = std::array::from_fn(|i| *slabs[1..slabs.len() - 1].get(i).unwrap_or(&f64::INFINITY));
         let inner_sectors = sectors.iter().map(|s| std::array::from_fn(|i| s[i + 1])).collect();

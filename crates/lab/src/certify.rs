@@ -1,15 +1,16 @@
 //! `certify`: the instruments pointed at a model of the user's own, for which an `f32` implementation is enough.
 
-use crate::check::Check;
+use crate::check::{Check, Outcome};
 use crate::finding::Finding;
 use crate::run::{Options, Task, execute, tasks_of_subject};
 use crate::subject::Subject;
 use crate::totality;
 use gonio_kernel::Lobe;
+use serde::Serialize;
 use std::fmt;
 
 /// What the instruments found about one model.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Certificate {
     /// The model's name.
     pub name: String,
@@ -26,7 +27,20 @@ impl Certificate {
 
 impl fmt::Display for Certificate {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        writeln!(out, "{}: {}", self.name, if self.holds() { "holds" } else { "FAILED" })
+        writeln!(out, "{}: {}", self.name, if self.holds() { "holds" } else { "FAILED" })?;
+        for check in &self.checks {
+            let Check { instrument, measured, meaning, limit, detail, .. } = check;
+            match &check.outcome {
+                Outcome::NotRun(reason) => writeln!(out, "  not run  {instrument}: {reason}")?,
+                Outcome::Passed => {
+                    writeln!(out, "  passed   {instrument}: {meaning} {limit:.3e}, measured {measured:.3e}")?
+                }
+                Outcome::Failed => {
+                    writeln!(out, "  FAILED   {instrument}: {meaning} {limit:.3e}, measured {measured:.3e}; {detail}")?;
+                }
+            }
+        }
+        Ok(())
     }
 }
 

@@ -8,9 +8,10 @@
 
 use crate::cells::{Cells, USUAL_BINS};
 use crate::check::Effort;
+use crate::directions::VIEWS;
+use crate::finding::{Finding, Run};
 use crate::probe::{Dir, Kind, Worth};
 use crate::random::Random;
-use crate::finding::{Finding, Run};
 use crate::statistics::{FAULT_MASS, FAULT_SIZE, POWER, chi2_p, poisson_p, samples_for, size_found};
 use crate::subject::{Prepared, View};
 
@@ -24,14 +25,14 @@ const LEAST_WIDTH: f64 = 32.0 / 16_777_216.0;
 /// How many samples a run takes per test: at full effort as many as find the stated fault.
 fn samples(run: &Run) -> u64 {
     match run.effort {
-        Effort::Quick => 400_000,
+        Effort::Quick => 250_000,
         Effort::Standard => 3_000_000,
         Effort::Full => samples_for(FAULT_SIZE, run.level, DEGREES, POWER),
     }
 }
 
 /// The usual degrees of freedom.
-const DEGREES: f64 = (USUAL_BINS - 1) as f64;
+pub(crate) const DEGREES: f64 = (USUAL_BINS - 1) as f64;
 
 /// What is sampled in `f32` in full may be sampled in `f64` by an eighth: it is the same program, one draw costs eight times
 /// as much, and its density is also held to its sampler point by point (`jacobian`).
@@ -39,15 +40,15 @@ const SHARE_OF_DOUBLE: u64 = 8;
 
 /// The worst of the four views.
 pub(crate) fn measure(view: View, run: &Run) -> Finding {
-    measure_with(view, run, samples(run))
+    measure_with(view, run, samples(run), VIEWS.len())
 }
 
-/// As [`measure`], with a given number of samples. A subject with a form in `f32` spends them there.
-pub(crate) fn measure_with(view: View, run: &Run, n: u64) -> Finding {
+/// As [`measure`], with given numbers of samples and views. A subject with a form in `f32` spends them there.
+pub(crate) fn measure_with(view: View, run: &Run, n: u64, views: usize) -> Finding {
     let mut random = run.random();
     let mut finding = Finding::p_value(run.level);
     let mut too_fine = String::new();
-    for at in view.prepared() {
+    for at in view.prepared().take(views) {
         if view.probe.single() && at.cells.width() < LEAST_WIDTH {
             too_fine += &format!("; {} left to f64, its cells are {:.0e} rad wide", at.name, at.cells.width());
             continue;

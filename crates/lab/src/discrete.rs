@@ -31,7 +31,8 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
         if let (Some(albedo), true) = (view.claims.albedo, view.claims.one_event) {
             finding.raise((worth.pdf - 1.0).abs(), || format!("probability {} at wo {}", worth.pdf, show(wo)));
             for (weight, known) in worth.weight().into_iter().zip(albedo) {
-                finding.raise((weight - known).abs(), || format!("weight {weight} instead of {known} at wo {}", show(wo)));
+                finding
+                    .raise((weight - known).abs(), || format!("weight {weight} instead of {known} at wo {}", show(wo)));
             }
         }
         // From below there is nothing.

@@ -63,7 +63,8 @@ impl Finding {
 
     fn out_of_limit(&self) -> bool {
         // A NaN keeps no limit.
-        if self.upwards { !(self.measured <= self.limit) } else { !(self.measured >= self.limit) }
+        let kept = if self.upwards { self.measured <= self.limit } else { self.measured >= self.limit };
+        !kept
     }
     /// Takes in one number; keeps the largest, with its detail. NaN counts as infinite.
     pub(crate) fn raise(&mut self, x: f64, detail: impl FnOnce() -> String) {
@@ -89,11 +90,6 @@ impl Finding {
     pub(crate) fn note(&mut self, note: String) {
         self.note = note;
     }
-    /// The measured number.
-    #[cfg(test)]
-    pub(crate) fn measured(&self) -> f64 {
-        self.measured
-    }
     /// Where the worst was met.
     pub(crate) fn detail(&self) -> &str {
         &self.detail
@@ -112,6 +108,15 @@ impl Finding {
             (false, false) => format!("{}; {}", self.detail, self.note),
             _ => self.detail + &self.note,
         };
-        Check { instrument: instrument.to_owned(), subject, outcome, measured, limit: self.limit, meaning: self.meaning.to_owned(), detail, seconds }
+        Check {
+            instrument: instrument.to_owned(),
+            subject,
+            outcome,
+            measured,
+            limit: self.limit,
+            meaning: self.meaning.to_owned(),
+            detail,
+            seconds,
+        }
     }
 }

@@ -34,7 +34,9 @@ pub(crate) fn measure(build: Build, run: &Run) -> Finding {
         };
         let frame = build(normal, tangent);
         let (error, what) = judge(frame, normal, tangent, &mut random);
-        finding.raise(error / f64::from(f32::EPSILON), || format!("{what}: normal {normal:?}, tangent {tangent:?}, {frame:?}"));
+        finding.raise(error / f64::from(f32::EPSILON), || {
+            format!("{what}: normal {normal:?}, tangent {tangent:?}, {frame:?}")
+        });
     }
     finding
 }
@@ -50,7 +52,7 @@ fn vector(random: &mut Random) -> Vec3<f32> {
             0 => *x = 0.0,
             1 => *x = -0.0,
             2 => *x *= 1e-6,
-            3 => *x = *x * 1e-30_f32,
+            3 => *x *= 1e-30,
             _ => {}
         }
     }

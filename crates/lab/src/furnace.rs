@@ -15,14 +15,16 @@ use crate::subject::{Prepared, View};
 pub(crate) fn measure(view: View, run: &Run) -> Finding {
     let mut random = run.random();
     let mut finding = Finding::p_value(run.level);
-    let n = run.by_effort(40_000, 300_000, 1_000_000);
+    let n = run.by_effort(20_000, 300_000, 1_000_000);
     for at in view.prepared() {
         let sampled = sample(view, at.wo, n, &mut random);
-        let reach = view.probe.weight_bound(at.wo).max(sampled.largest);
+        // Where no bound is promised, the largest weight of the sample must do.
+        let bound = Some(view.probe.weight_bound(at.wo)).filter(|bound| bound.is_finite());
+        let reach = bound.map_or(sampled.largest, |bound| bound.max(sampled.largest));
         for c in 0..3 {
             let albedo = at.total.value[c] + sampled.discrete.iter().map(|d| d.1.f_cos[c]).sum::<f64>();
-            let square = at.total.value[4 + c]
-                + sampled.discrete.iter().map(|d| d.1.f_cos[c] * d.1.weight()[c]).sum::<f64>();
+            let square =
+                at.total.value[4 + c] + sampled.discrete.iter().map(|d| d.1.f_cos[c] * d.1.weight()[c]).sum::<f64>();
             let mean = sampled.sum[c] / n as f64;
             // Not chance: the quadrature's error, and rounding, of weights and of their sum, which may all go one way.
             let slack = at.total.error + rounding(view) + f64::EPSILON * n as f64;
@@ -40,7 +42,8 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
 /// Quadrature against 1, and against the known albedo.
 pub(crate) fn measure_bound(view: View, run: &Run) -> Finding {
     let mut random = run.random();
-    let mut finding = Finding::at_most(1.0, "excess over 1 or error of a known albedo, in units of quadrature error and rounding ≤");
+    let mut finding =
+        Finding::at_most(1.0, "excess over 1 or error of a known albedo, in units of quadrature error and rounding ≤");
     let mut largest = 0.0_f64;
     for Prepared { name, wo, total, .. } in view.prepared() {
         let sampled = sample(view, *wo, 1000, &mut random);

@@ -58,30 +58,36 @@ pub(crate) fn measure_mixture(first: &'static Species, second: &'static Species,
         x.extend([(); 3].map(|()| random.coarse() as f32));
         x
     };
-    compare(run, at + 9, &mut ordinary, |x, out| {
-        let numbers: Vec<F32x8> = (0..at).map(|i| pack(x, i)).collect();
-        let surface = Surface::black()
-            .with(numbers[a + b], (first.lanes)(&numbers[..a]))
-            .with(numbers[a + b + 1], (second.lanes)(&numbers[a..a + b]));
-        let closure = Unguarded::new(&surface, pack3(x, at));
-        let value = closure.eval(pack3(x, at + 3));
-        let sample = closure.sample([pack(x, at + 6), pack(x, at + 7), pack(x, at + 8)]);
-        let event = closure.discrete(&sample.event);
-        for (l, out) in out.iter_mut().enumerate() {
-            push_value(lane_value(&value, l), out);
-            push_sample(lane(sample.wi, l), &lane_event(&sample.event, l), out);
-            push_value(lane_value(&event, l), out);
-        }
-    }, |x, out| {
-        let surface = Surface::black()
-            .with(x[a + b], (first.single)(&x[..a]))
-            .with(x[a + b + 1], (second.single)(&x[a..a + b]));
-        let closure = Unguarded::new(&surface, vec3(x, at));
-        let sample = closure.sample([x[at + 6], x[at + 7], x[at + 8]]);
-        push_value(closure.eval(vec3(x, at + 3)), out);
-        push_sample(sample.wi, &sample.event, out);
-        push_value(closure.discrete(&sample.event), out);
-    })
+    compare(
+        run,
+        at + 9,
+        &mut ordinary,
+        |x, out| {
+            let numbers: Vec<F32x8> = (0..at).map(|i| pack(x, i)).collect();
+            let surface = Surface::black()
+                .with(numbers[a + b], (first.lanes)(&numbers[..a]))
+                .with(numbers[a + b + 1], (second.lanes)(&numbers[a..a + b]));
+            let closure = Unguarded::new(&surface, pack3(x, at));
+            let value = closure.eval(pack3(x, at + 3));
+            let sample = closure.sample([pack(x, at + 6), pack(x, at + 7), pack(x, at + 8)]);
+            let event = closure.discrete(&sample.event);
+            for (l, out) in out.iter_mut().enumerate() {
+                push_value(lane_value(&value, l), out);
+                push_sample(lane(sample.wi, l), &lane_event(&sample.event, l), out);
+                push_value(lane_value(&event, l), out);
+            }
+        },
+        |x, out| {
+            let surface = Surface::black()
+                .with(x[a + b], (first.single)(&x[..a]))
+                .with(x[a + b + 1], (second.single)(&x[a..a + b]));
+            let closure = Unguarded::new(&surface, vec3(x, at));
+            let sample = closure.sample([x[at + 6], x[at + 7], x[at + 8]]);
+            push_value(closure.eval(vec3(x, at + 3)), out);
+            push_sample(sample.wi, &sample.event, out);
+            push_value(closure.discrete(&sample.event), out);
+        },
+    )
 }
 
 fn push_value(value: Value<f32>, out: &mut Vec<f32>) {
@@ -89,7 +95,15 @@ fn push_value(value: Value<f32>, out: &mut Vec<f32>) {
 }
 fn push_sample(wi: Vec3<f32>, event: &Event<f32>, out: &mut Vec<f32>) {
     let truth = |x: bool| f32::from(u8::from(x));
-    out.extend([wi.x, wi.y, wi.z, event.lobe as f32, truth(event.transmitted), truth(event.discrete), truth(event.failed)]);
+    out.extend([
+        wi.x,
+        wi.y,
+        wi.z,
+        event.lobe as f32,
+        truth(event.transmitted),
+        truth(event.discrete),
+        truth(event.failed),
+    ]);
 }
 
 /// Mathematics, warps, frames and Fresnel: everything beneath the lobes that takes numbers.
@@ -97,20 +111,33 @@ pub(crate) fn measure_parts(run: &Run) -> Finding {
     let mut ordinary = |random: &mut Random| {
         (0..6).map(|i| if i < 3 { random.between(-1.0, 1.0) as f32 } else { random.coarse() as f32 }).collect()
     };
-    compare(run, 6, &mut ordinary, |x, out| {
-        let numbers = parts::<F32x8>(std::array::from_fn(|i| pack(x, i)));
-        for (l, out) in out.iter_mut().enumerate() {
-            out.extend(numbers.iter().map(|n| n.to_array()[l]));
-        }
-    }, |x, out| out.extend(parts::<f32>(std::array::from_fn(|i| x[i]))))
+    compare(
+        run,
+        6,
+        &mut ordinary,
+        |x, out| {
+            let numbers = parts::<F32x8>(std::array::from_fn(|i| pack(x, i)));
+            for (l, out) in out.iter_mut().enumerate() {
+                out.extend(numbers.iter().map(|n| n.to_array()[l]));
+            }
+        },
+        |x, out| out.extend(parts::<f32>(std::array::from_fn(|i| x[i]))),
+    )
 }
 
 fn parts<R: Real>(x: [R; 6]) -> Vec<R> {
     let v = Vec3::new(x[0], x[1], x[2]);
     let w = Vec3::new(x[3], x[4], x[5]);
-    let mut out = vec![x[0].min(x[1]), x[0].max(x[1]), x[0].clamp(-0.5, 0.5), x[0].copysign(x[1]), x[3].sqrt(), x[0].abs()];
+    let mut out =
+        vec![x[0].min(x[1]), x[0].max(x[1]), x[0].clamp(-0.5, 0.5), x[0].copysign(x[1]), x[3].sqrt(), x[0].abs()];
     let (sin, cos) = math::sin_cos_turns(x[0]);
-    out.extend([sin, cos, fresnel::dielectric(x[3], x[4]), fresnel::conductor(x[3], x[4], x[5]), fresnel::schlick(x[3], x[4])]);
+    out.extend([
+        sin,
+        cos,
+        fresnel::dielectric(x[3], x[4]),
+        fresnel::conductor(x[3], x[4], x[5]),
+        fresnel::schlick(x[3], x[4]),
+    ]);
     out.extend(warp::sample_uniform_triangle([x[3], x[4]]));
     let frames = [Frame::from_normal(v), Frame::from_normal_tangent(v, w)];
     let mut vectors = vec![
@@ -127,7 +154,7 @@ fn parts<R: Real>(x: [R; 6]) -> Vec<R> {
 }
 
 /// Counts differing numbers.
-fn compare(
+pub(crate) fn compare(
     run: &Run,
     count: usize,
     ordinary: &mut dyn FnMut(&mut Random) -> Vec<f32>,

@@ -31,6 +31,7 @@ mod directions;
 mod discrete;
 mod elementary;
 mod faults;
+mod faults_beneath;
 mod finding;
 mod frames;
 mod furnace;

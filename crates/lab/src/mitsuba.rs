@@ -12,13 +12,13 @@ use crate::finding::{Finding, Run};
 use crate::oracle::{ggx_g1, ggx_g2};
 use crate::precision::sensitivity;
 use crate::probe::{Dir, Probe, SurfaceProbe};
-use crate::zoo::Species;
+use crate::totality::Build;
 use gonio_kernel::{Surface, Vec3, fresnel};
 
 const REFERENCE: &str = include_str!("../../../tests/reference/roughconductor.json");
 
-/// The rough conductor, as a species of alpha_x, alpha_y, three η, three k.
-pub(crate) fn measure(metal: &Species, _run: &Run) -> Finding {
+/// The rough conductor, made of alpha_x, alpha_y, three η, three k.
+pub(crate) fn measure(metal: Build<f64>, _run: &Run) -> Finding {
     let mut finding = Finding::at_most(1.0, "max |kernel − Mitsuba| in units of its rounding limit ≤");
     let eps = f64::from(f32::EPSILON);
     let (mut count, mut relative) = (0, 0.0_f64);
@@ -26,7 +26,7 @@ pub(crate) fn measure(metal: &Species, _run: &Run) -> Finding {
         let get = |name| numbers(line, name);
         let p = [get("alpha_x"), get("alpha_y"), get("eta"), get("k")].concat();
         let (wo, wi) = (vector(&get("wo")), vector(&get("wi")));
-        let probe = SurfaceProbe::new(Surface::of((metal.double)(&p)), None);
+        let probe = SurfaceProbe::new(Surface::of(metal(&p)), None);
         let correlated = ggx_g2(p[0], p[1], wo, wi) / (ggx_g1(p[0], p[1], wo) * ggx_g1(p[0], p[1], wi));
         let right = [get("f_cos").iter().map(|f| f * correlated).collect(), get("pdf")].concat();
         let moves = sensitivity(&probe, wo, wi);

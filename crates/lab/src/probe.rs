@@ -3,7 +3,7 @@
 //! Instruments are written once against this trait and compiled once. A direction or random number handed to a probe of
 //! `f32` arithmetic must lie on its lattice: [`Probe::snap`] puts it there, so that nothing is rounded unseen.
 
-use gonio_kernel::{Event, F32x8, Lobe, Mask8, Real, Rgb, Sample, Surface, Value, Vec3, closure::Unguarded};
+use gonio_kernel::{Event, F32x8, Lobe, Mask8, Precision, Real, Rgb, Sample, Surface, Value, Vec3, closure::Unguarded};
 
 /// A direction, local.
 pub(crate) type Dir = Vec3<f64>;
@@ -66,7 +66,8 @@ pub(crate) trait Probe: Sync {
     }
     /// Whether the arithmetic inside is `f32`.
     fn single(&self) -> bool;
-    /// The largest weight that sampling may give at wo: 1 unless a mixture must trade between its lobes.
+    /// The largest weight that sampling may give at wo: 1 unless a mixture must trade between its lobes. Infinite if
+    /// nothing is promised.
     fn weight_bound(&self, _wo: Dir) -> f64 {
         1.0
     }
@@ -149,7 +150,10 @@ impl<R: Scalar, L: Lobe<R> + Sync> Probe for LobeProbe<'_, R, L> {
         draw(self.lobe.sample(wo, u.map(R::lit)), |event| self.lobe.discrete(wo, event))
     }
     fn single(&self) -> bool {
-        R::PRECISION == gonio_kernel::Precision::Single
+        R::PRECISION == Precision::Single
+    }
+    fn weight_bound(&self, _wo: Dir) -> f64 {
+        f64::INFINITY
     }
 }
 
@@ -201,7 +205,7 @@ impl<R: Scalar> Probe for SurfaceProbe<R> {
         }
     }
     fn single(&self) -> bool {
-        R::PRECISION == gonio_kernel::Precision::Single
+        R::PRECISION == Precision::Single
     }
     fn weight_bound(&self, wo: Dir) -> f64 {
         // Lobe i is chosen with pᵢ = wᵢYᵢ/Σwⱼ Yⱼ, and no lobe weighs more than 1 by itself: Σwᵢfᵢ/Σpᵢpdfᵢ ≤ max wᵢ/pᵢ.

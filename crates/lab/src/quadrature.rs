@@ -52,7 +52,12 @@ const WEIGHTS: [f64; 7] = [
 ];
 
 /// ∫∫ f over the rectangle, to the absolute tolerance, with at most about `budget` evaluations.
-pub(crate) fn integrate(f: &dyn Fn(f64, f64) -> Integrands, area: Rectangle, tolerance: f64, budget: usize) -> Integral {
+pub(crate) fn integrate(
+    f: &dyn Fn(f64, f64) -> Integrands,
+    area: Rectangle,
+    tolerance: f64,
+    budget: usize,
+) -> Integral {
     let whole = rule(f, area);
     let mut left = budget as isize;
     let mut sum = Integral::default();

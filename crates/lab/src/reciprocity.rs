@@ -32,7 +32,8 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
             if there[c].max(back[c]) < floor {
                 continue;
             }
-            let limit = if view.claims.symmetric { 16.0 * eps * a.max(b) } else { 8.0 * (eps * a.max(b)).max(moves[c] / wi.z) };
+            let limit =
+                if view.claims.symmetric { 16.0 * eps * a.max(b) } else { 8.0 * (eps * a.max(b)).max(moves[c] / wi.z) };
             residual = residual.max((a - b).abs() / a.max(b));
             finding.raise((a - b).abs() / limit, || {
                 format!("{a:.9e} against {b:.9e}, channel {c}, wo {}, wi {}", show(wo), show(wi))

@@ -3,7 +3,7 @@
 use crate::directions::{any_above, partner, show};
 use crate::finding::{Finding, Run};
 use crate::oracle;
-use crate::probe::{Probe, SurfaceProbe};
+use crate::probe::{Dir, Probe, SurfaceProbe, Worth};
 use crate::totality::parameter;
 use crate::zoo::Species;
 use gonio_kernel::units::{Flux, LUMINOUS_EFFICACY};
@@ -13,20 +13,27 @@ use gonio_kernel::{Alpha, Rgb, Roughness, Surface, fresnel};
 /// and the polar roots of its Fresnel lose eps over the smallest term, 1e-4 squared.
 const LIMIT: f64 = 1e-7;
 
+/// A model under test: parameters, wo, wi to f_cos and pdf.
+pub(crate) type Model = fn(&Species, &[f64], Dir, Dir) -> Worth;
+
+/// The kernel's.
+pub(crate) fn kernel(species: &Species, p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    SurfaceProbe::new(Surface::of((species.double)(p)), None).eval(wo, wi)
+}
+
 /// One species at random parameters.
-pub(crate) fn measure(species: &Species, run: &Run) -> Finding {
+pub(crate) fn measure(species: &Species, model: Model, run: &Run) -> Finding {
     let mut random = run.random();
     let mut finding = Finding::at_most(LIMIT, "max |kernel − oracle| / oracle ≤");
     for _ in 0..run.by_effort(30_000, 300_000, 3_000_000) {
         let p: Vec<f64> = species.parameters.iter().map(|p| f64::from(parameter(p, &mut random))).collect();
-        let probe = SurfaceProbe::new(Surface::of((species.double)(&p)), None);
         let wo = any_above(&mut random);
         let wi = partner(&mut random, wo);
         // The oracle needs room: tan θ of a grazing direction and 1 − cos² of it lose digits.
         if wo.z < 1e-4 || wi.z < 1e-4 {
             continue;
         }
-        let (got, right) = (probe.eval(wo, wi), (species.oracle)(&p, wo, wi));
+        let (got, right) = (model(species, &p, wo, wi), (species.oracle)(&p, wo, wi));
         let density = right.pdf;
         for (got, right) in got.numbers().into_iter().zip(right.numbers()) {
             // Reflectances below 1e-6 count absolutely: (1 − cosθ)⁵ of the oracle has no digits near the normal.

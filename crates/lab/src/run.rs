@@ -11,7 +11,9 @@ use crate::random::seed_for;
 use crate::statistics::sidak;
 use crate::subject::{Subject, View};
 use crate::zoo::{METAL, rows, species};
-use crate::{chi2, consistency, discrete, elementary, frames, furnace, lanes, mitsuba, normalisation, precision, reciprocity};
+use crate::{
+    chi2, consistency, discrete, elementary, frames, furnace, lanes, mitsuba, normalisation, precision, reciprocity,
+};
 use crate::{reference, totality, warps, weight};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -75,7 +77,8 @@ pub fn validate_kernel(options: &Options, sink: &mut dyn FnMut(Check)) {
             tasks.push(Task::new("warps", name("χ²"), VIEWS, move |run| chi2::measure(view, run)));
             tasks.push(Task::new("warps", name("∫pdf"), VIEWS, move |run| normalisation::measure(view, run)));
             if !view.probe.single() {
-                tasks.push(Task::new("warps", name("jacobian"), 0, move |run| consistency::measure_jacobian(view, run)));
+                tasks
+                    .push(Task::new("warps", name("jacobian"), 0, move |run| consistency::measure_jacobian(view, run)));
             }
         }
     }
@@ -154,19 +157,31 @@ fn kernel_tasks() -> Vec<Task<'static>> {
     let all: Vec<_> = species().collect();
     for (i, &one) in all.iter().enumerate() {
         let other = all[(i + 1) % all.len()];
-        tasks.push(Task::new("lanes", format!("{} with {}", one.name, other.name), 0, |run| lanes::measure_mixture(one, other, run)));
-        tasks.push(Task::new("totality", format!("{} inside its domain", one.name), 0, |run| totality::measure_inside(one, run)));
-        tasks.push(Task::new("totality", format!("{} at special numbers", one.name), 0, |run| totality::measure_special(one, run)));
-        tasks.push(Task::new("reference", one.name, 0, |run| reference::measure(one, run)));
+        tasks.push(Task::new("lanes", format!("{} with {}", one.name, other.name), 0, |run| {
+            lanes::measure_mixture(one, other, run)
+        }));
+        tasks.push(Task::new("totality", format!("{} inside its domain", one.name), 0, |run| {
+            totality::measure_inside(one.parameters, one.lanes, run)
+        }));
+        tasks.push(Task::new("totality", format!("{} at special numbers", one.name), 0, |run| {
+            totality::measure_special(one.parameters, one.single, run)
+        }));
+        tasks.push(Task::new("reference", one.name, 0, |run| reference::measure(one, reference::kernel, run)));
     }
     tasks.push(Task::new("lanes", "mathematics, warps, frames, Fresnel", 0, lanes::measure_parts));
     tasks.push(Task::new("reference", "Fresnel, roughness, photometry", 0, reference::measure_conventions));
-    tasks.push(Task::new("mitsuba", "rough conductor", 0, |run| mitsuba::measure(&METAL, run)));
+    tasks.push(Task::new("mitsuba", "rough conductor", 0, |run| mitsuba::measure(METAL.double, run)));
     tasks.push(Task::new("mitsuba", "Fresnel", 0, mitsuba::measure_fresnel));
     tasks.push(Task::new("frames", "from normal and tangent", 0, |run| frames::measure(frames::kernel, run)));
-    tasks.push(Task::new("elementary", "sin_cos_turns f32", 0, |run| elementary::measure(elementary::single, true, run)));
-    tasks.push(Task::new("elementary", "sin_cos_turns f64", 0, |run| elementary::measure(elementary::double, false, run)));
-    tasks.push(Task::new("warps", "uniform triangle f32", 1, |run| warps::measure_triangle(warps::triangle_single, run)));
+    tasks.push(Task::new("elementary", "sin_cos_turns f32", 0, |run| {
+        elementary::measure(elementary::single, true, run)
+    }));
+    tasks.push(Task::new("elementary", "sin_cos_turns f64", 0, |run| {
+        elementary::measure(elementary::double, false, run)
+    }));
+    tasks.push(Task::new("warps", "uniform triangle f32", 1, |run| {
+        warps::measure_triangle(warps::triangle_single, run)
+    }));
     tasks
 }
 
@@ -181,7 +196,9 @@ pub(crate) fn execute(tasks: Vec<Task>, options: &Options, sink: &mut dyn FnMut(
         for _ in 0..threads {
             let (send, next, tasks) = (send.clone(), &next, &tasks);
             scope.spawn(move || {
-                while let Some((index, task)) = Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|i| Some((i, tasks.get(i)?))) {
+                while let Some((index, task)) =
+                    Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|i| Some((i, tasks.get(i)?)))
+                {
                     if send.send((index, task.run(options, level))).is_err() {
                         return;
                     }

@@ -58,8 +58,8 @@ pub(crate) struct Prepared {
 impl<'a> Subject<'a> {
     /// A probe of either precision that is its own reference.
     pub(crate) fn of_probe(name: &str, probe: impl Probe + 'a, claims: Claims) -> Self {
-        let (single, double): (Option<Box<dyn Probe + 'a>>, Option<Box<dyn Probe + 'a>>) =
-            if probe.single() { (Some(Box::new(probe)), None) } else { (None, Some(Box::new(probe))) };
+        let probe: Box<dyn Probe + 'a> = Box::new(probe);
+        let (single, double) = if probe.single() { (Some(probe), None) } else { (None, Some(probe)) };
         Self { name: name.to_owned(), single, double, claims, prepared: Default::default() }
     }
 

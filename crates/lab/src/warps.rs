@@ -89,10 +89,11 @@ pub(crate) fn measure_triangle(sample: TriangleWarp, run: &Run) -> Finding {
     for i in 0..SIDE {
         for j in 0..SIDE - i {
             let halves = if i + j == SIDE - 1 { 1 } else { 2 };
-            statistic += counts[i * SIDE + j][..halves].iter().map(|&c| (c as f64 - expected).powi(2) / expected).sum::<f64>();
+            statistic +=
+                counts[i * SIDE + j][..halves].iter().map(|&c| (c as f64 - expected).powi(2) / expected).sum::<f64>();
         }
     }
-    finding.lower(chi2_p(statistic, (SIDE * SIDE - 1) as f64), || format!("χ² = {statistic:.1} in {} bins", SIDE * SIDE));
+    finding
+        .lower(chi2_p(statistic, (SIDE * SIDE - 1) as f64), || format!("χ² = {statistic:.1} in {} bins", SIDE * SIDE));
     finding
 }
-

@@ -157,9 +157,8 @@ fn row(name: impl Into<String>, lobes: &[(f32, &'static Species, &[f32])]) -> Ro
     let lobes: Vec<_> = lobes.iter().map(|(w, s, p)| (*w, *s, p.to_vec())).collect();
     // Lambert and mirror return ρ at every angle, so what is made of them has a known albedo.
     let known = lobes.iter().all(|(_, s, _)| s.name == "lambert" || s.name == "mirror");
-    let albedo = known.then(|| {
-        std::array::from_fn(|c| lobes.iter().map(|(w, _, p)| f64::from(*w) * f64::from(p[c])).sum())
-    });
+    let albedo =
+        known.then(|| std::array::from_fn(|c| lobes.iter().map(|(w, _, p)| f64::from(*w) * f64::from(p[c])).sum()));
     Row { name: name.into(), lobes, albedo }
 }
 
@@ -194,12 +193,10 @@ pub(crate) fn rows() -> Vec<Row> {
         row("conductor weight 0, lambert", &[(0.0, &SCHLICK, sharp), (1.0, &LAMBERT, &COLOUR)]),
         row("two conductors", &[(0.5, &METAL, &gold), (0.5, &SCHLICK, sharp)]),
         row("three lobes", &[(0.3, &SCHLICK, wide), (0.2, &MIRROR, &COLOUR), (0.5, &LAMBERT, &COLOUR)]),
-        row("four lobes", &[
-            (0.25, &METAL, &gold),
-            (0.1, &MIRROR, &WHITE),
-            (0.25, &SCHLICK, sharp),
-            (0.4, &LAMBERT, &COLOUR),
-        ]),
+        row(
+            "four lobes",
+            &[(0.25, &METAL, &gold), (0.1, &MIRROR, &WHITE), (0.25, &SCHLICK, sharp), (0.4, &LAMBERT, &COLOUR)],
+        ),
     ]);
     rows
 }

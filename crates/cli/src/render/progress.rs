@@ -34,6 +34,7 @@ impl Bar {
     pub(super) fn finish(self) {
         if let Some(bar) = self.0 {
             bar.abandon();
+            eprintln!(); // what comes next begins a line of its own
         }
     }
 }

@@ -33,7 +33,7 @@ pub(super) const INSTRUMENTS: [(&str, &str); 2] = [
 pub(super) fn run(options: &Options, sink: &mut dyn FnMut(Check)) {
     let count = match options.effort {
         Effort::Quick => 1 << 13,
-        Effort::Standard => 1 << 16,
+        Effort::Standard => 1 << 15,
         Effort::Full => 1 << 20,
     };
     let mut send = |instrument: &str, subject: String, measure: &mut dyn FnMut(u64) -> Finding| {

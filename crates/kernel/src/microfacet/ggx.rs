@@ -30,11 +30,14 @@ impl<R: Real> Ggx<R> {
     /// D of the half vector h = wo + wi, not normalised, with |h|² given \[1/sr\].
     #[inline(always)]
     pub fn d(&self, h: Vec3<R>, h_length2: R) -> R {
-        let x = h.x / self.alpha_x;
-        let y = h.y / self.alpha_y;
-        let q = x.mul_add(x, y.mul_add(y, h.z * h.z));
-        let r = h_length2 / q;
-        r * r * R::lit(core::f64::consts::FRAC_1_PI) / (self.alpha_x * self.alpha_y)
+        // With a = α_x α_y: D = a³|h|⁴/(π (α_y²h_x² + α_x²h_y² + a²h_z²)²), one division instead of four.
+        let a = self.alpha_x * self.alpha_y;
+        let x = self.alpha_y * h.x;
+        let y = self.alpha_x * h.y;
+        let z = a * h.z;
+        let q = x.mul_add(x, y.mul_add(y, z * z));
+        let r = a * h_length2 / q;
+        r * r * a * R::lit(core::f64::consts::FRAC_1_PI)
     }
 
     /// s(w) = √(w_z² + α_x²w_x² + α_y²w_y²), the length of w in the space where the surface is a hemisphere.

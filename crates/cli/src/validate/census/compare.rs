@@ -55,16 +55,22 @@ pub(super) fn compare(
                 let (a, b) = (expected[i].lane(lane), got[i].lane(lane));
                 found.rays += u64::from(ray.mask.lane(lane));
                 found.hits += u64::from(a.is_some());
-                let shadows = [&plain, &filtered].map(|masks| masks[0][i].lane(lane) == masks[1][i].lane(lane));
-                // A ray is blocked by anything exactly if it has a nearest hit.
-                let consistent = plain[1][i].lane(lane) == b.is_some();
-                if same(a.as_ref(), b.as_ref()) && shadows == [true, true] && consistent {
+                let [shadow, through] = [&plain, &filtered].map(|masks| masks[0][i].lane(lane) == masks[1][i].lane(lane));
+                let what = if !same(a.as_ref(), b.as_ref()) {
+                    "different hits"
+                } else if !shadow {
+                    "blocked by one only"
+                } else if !through {
+                    "blocked by one only, through an opacity filter"
+                } else if plain[1][i].lane(lane) != b.is_some() {
+                    // A ray is blocked by anything exactly if it has a nearest hit.
+                    "blocked without a hit, or hit without being blocked"
+                } else {
                     continue;
-                }
+                };
                 found.disagreements += 1;
                 found.first.get_or_insert_with(|| {
                     let number = (first + i as u64) * 8 + lane as u64;
-                    let what = if shadows == [true, true] && consistent { "nearest hit" } else { "blocked or not" };
                     format!(
                         "ray {number}: {what}: {} has {}, {} has {}; {}",
                         oracle.name(), words(a.as_ref()), accel.name(), words(b.as_ref()), describe(ray, lane),

@@ -136,13 +136,16 @@ impl Dice<'_> {
         a.along(u, b - a).along(v, c - a)
     }
 
-    /// A point in the bounds, grown by half their size on every side.
+    /// Half of the time a point in the bounds, grown by half their size on every side, else one near some vertex: the
+    /// bounds of scattered things are mostly empty.
     fn around(&self) -> Vec3<f32> {
-        let at = |axis: usize| {
-            let (lo, hi) = (self.specimen.lo[axis], self.specimen.hi[axis]);
-            lo + (hi - lo + 0.1) * (2.0 * self.u(20 + axis as u64) - 0.5)
-        };
-        Vec3::new(at(0), at(1), at(2))
+        let spread = [20, 21, 22].map(|dimension| 2.0 * self.u(dimension) - 0.5);
+        if self.pick(23, 2) == 0 {
+            let vertex = self.specimen.triangles[self.pick(24, self.specimen.triangles.len())].corners[0];
+            return vertex + (Vec3::from(spread) - Vec3::splat(0.5)) * 2.0;
+        }
+        let (lo, hi) = (self.specimen.lo, self.specimen.hi);
+        Vec3::from([0, 1, 2].map(|axis| lo[axis] + (hi[axis] - lo[axis] + 0.1) * spread[axis]))
     }
 
     fn towards(&self, origin: Vec3<f32>, target: Vec3<f32>) -> Ray {
@@ -154,11 +157,13 @@ impl Dice<'_> {
         let open = |origin, dir| Ray { origin, dir, t_min: 0.0, t_max: f32::INFINITY };
         match family {
             Family::Camera => {
-                // Eight neighbours of a picture of 256 columns, seen from a corner beyond the bounds.
+                // Eight neighbours of a picture of 256 columns, seen from a corner beyond the bounds, aimed at a triangle:
+                // the eight throw the same dice for their place.
+                let packet = Dice { index: self.index / 8, seed: self.seed ^ 1, ..*self };
                 let hi = Vec3::from(self.specimen.hi);
                 let eye = hi + (hi - Vec3::from(self.specimen.lo)) * 0.7;
-                let (x, y) = ((self.index % 256) as f32 / 128.0 - 1.0, (self.index / 256 % 256) as f32 / 128.0 - 1.0);
-                let centre = (hi + Vec3::from(self.specimen.lo)) * 0.5;
+                let (x, y) = ((self.index % 8) as f32 / 128.0, 0.25 * packet.u(4));
+                let centre = packet.vertex();
                 let forward = (centre - eye).normalize_or(Vec3::unit_z());
                 let (right, up) = gonio_kernel::frame::tangents(forward);
                 open(eye, (forward + right * (0.5 * x) + up * (0.5 * y)).normalize_or(forward))

@@ -1,0 +1,145 @@
+//! Planted faults beneath and around the lobes: textbook formulas misread, frames, lanes, sines, warps, the guard.
+
+use crate::faults::planted;
+use crate::frames::{self, kernel};
+use crate::probe::Worth;
+use crate::run::Task;
+use crate::zoo::{LAMBERT, METAL, SCHLICK};
+use crate::{elementary, lanes, mitsuba, reference, totality, warps};
+use gonio_kernel::lobe::AnyLobe;
+use gonio_kernel::{F32x8, Frame, Real, Vec3};
+
+/// One task per fault and instrument.
+pub(crate) fn tasks() -> Vec<Task<'static>> {
+    let mut tasks = Vec::from(misread());
+    tasks.extend(around());
+    tasks.extend([
+        planted("left-handed frame", "frames", |run| {
+            frames::measure(
+                |n, t| {
+                    let f = kernel(n, t);
+                    Frame { y: -f.y, ..f }
+                },
+                run,
+            )
+        }),
+        planted("tangent on the other side", "frames", |run| {
+            frames::measure(
+                |n, t| {
+                    let f = kernel(n, t);
+                    Frame { x: -f.x, y: -f.y, ..f }
+                },
+                run,
+            )
+        }),
+        planted("tangent not orthonormalised", "frames", |run| {
+            frames::measure(
+                |n, t| Frame { x: t.unwrap_or(Vec3::unit_z()).normalize_or(kernel(n, t).x), ..kernel(n, t) },
+                run,
+            )
+        }),
+        planted("frame of a normal that is not normalised", "frames", |run| {
+            frames::measure(|n, t| Frame { z: n, ..kernel(n, t) }, run)
+        }),
+        planted("cosine of the wrong sign in one quadrant", "elementary", |run| {
+            let wrong = |u: f64| {
+                let (s, c) = elementary::double(u);
+                (s, if s < 0.0 && c < 0.0 { -c } else { c })
+            };
+            elementary::measure(wrong, false, run)
+        }),
+        planted("sine off by 4 ulp", "elementary", |run| {
+            let wrong = |u: f64| {
+                let (s, c) = elementary::single(u);
+                (s * (1.0 + 4.0 * f64::from(f32::EPSILON)), c)
+            };
+            elementary::measure(wrong, true, run)
+        }),
+        planted("lane 3 off by one ulp", "lanes", |run| {
+            lanes::compare(
+                run,
+                1,
+                &mut |random| vec![random.coarse() as f32],
+                |x, out| {
+                    let root = F32x8::new(std::array::from_fn(|l| x[l][0])).sqrt().to_array();
+                    out.iter_mut()
+                        .zip(root)
+                        .enumerate()
+                        .for_each(|(l, (out, x))| out.push(if l == 3 { x.next_up() } else { x }));
+                },
+                |x, out| out.push(x[0].sqrt()),
+            )
+        }),
+        planted("triangle without its fold", "warps", |run| warps::measure_triangle(|[u, v]| [u * (1.0 - v), v], run)),
+        planted("triangle that leaves itself", "warps", |run| warps::measure_triangle(|[u, v]| [u, v], run)),
+    ]);
+    tasks
+}
+
+/// Errors that a lobe would make in value and density alike: only a second opinion can tell.
+fn misread() -> [Task<'static>; 6] {
+    [
+        planted("alpha_x and alpha_y swapped everywhere", "reference", |run| {
+            reference::measure(&METAL, |s, p, wo, wi| reference::kernel(s, &swapped(p), wo, wi), run)
+        }),
+        planted("alpha_x and alpha_y swapped everywhere", "mitsuba", |run| {
+            mitsuba::measure(|p| (METAL.double)(&swapped(p)), run)
+        }),
+        planted("alpha taken for roughness", "mitsuba", |run| {
+            mitsuba::measure(|p| (METAL.double)(&[&[p[0] * p[0], p[1] * p[1]], &p[2..]].concat()), run)
+        }),
+        planted("1/π missing in value and density", "reference", |run| {
+            reference::measure(
+                &LAMBERT,
+                |s, p, wo, wi| {
+                    let Worth { f_cos, pdf } = reference::kernel(s, p, wo, wi);
+                    Worth { f_cos: f_cos.map(|f| f * std::f64::consts::PI), pdf: pdf * std::f64::consts::PI }
+                },
+                run,
+            )
+        }),
+        planted("η and k exchanged", "reference", |run| {
+            reference::measure(
+                &METAL,
+                |s, p, wo, wi| reference::kernel(s, &[&p[..2], &p[5..8], &p[2..5]].concat(), wo, wi),
+                run,
+            )
+        }),
+        planted("Schlick's power 4 for 5", "reference", |run| {
+            reference::measure(
+                &SCHLICK,
+                |s, p, wo, wi| {
+                    let Worth { f_cos, pdf } = reference::kernel(s, p, wo, wi);
+                    let m = 1.0 - 0.5 * (wo + wi).length();
+                    let ratio = |f0: f64| (f0 + (1.0 - f0) * m.powi(4)) / (f0 + (1.0 - f0) * m.powi(5)).max(1e-99);
+                    Worth { f_cos: [0, 1, 2].map(|c| f_cos[c] * ratio(p[2 + c])), pdf }
+                },
+                run,
+            )
+        }),
+    ]
+}
+
+fn swapped(p: &[f64]) -> Vec<f64> {
+    [&[p[1], p[0]], &p[2..]].concat()
+}
+
+/// Closures that keep neither of their promises.
+fn around() -> [Task<'static>; 2] {
+    fn clamped(p: &[f32]) -> AnyLobe<f32> {
+        let inside: Vec<f32> = p.iter().zip(SCHLICK.parameters).map(|(&x, r)| x.max(r.lo).min(r.hi)).collect();
+        (SCHLICK.single)(&inside)
+    }
+    fn too_narrow(p: &[F32x8]) -> AnyLobe<F32x8> {
+        let narrow = F32x8::splat(1e-25);
+        (SCHLICK.lanes)(&[&[p[0] * narrow, p[1] * narrow], &p[2..]].concat())
+    }
+    [
+        planted("parameters outside the domain quietly clamped", "totality", |run| {
+            totality::measure_special(SCHLICK.parameters, clamped, run)
+        }),
+        planted("widths for which D overflows", "totality", |run| {
+            totality::measure_inside(SCHLICK.parameters, too_narrow, run)
+        }),
+    ]
+}

@@ -1,0 +1,163 @@
+//! Threads, crops, plans, backends, scale and place never change a picture; light neither leaks in nor gets lost.
+
+use crate::support::cornell_box;
+use glam::{DAffine3, DVec3};
+use gonio_kernel::Rgb;
+use gonio_tracer::scene::{Color, FresnelSpec, LobeSpec, Model, Scene};
+use gonio_tracer::{Backend, Crop, Plan, RenderSettings, Rendering, World, render};
+
+fn rendered(scene: &Scene, backend: Backend, change: impl Fn(&mut RenderSettings)) -> Rendering {
+    let world = World::new(scene).expect("the scene is sound");
+    let mut settings = RenderSettings::of(scene, &world);
+    change(&mut settings);
+    render(&world, &*backend.build(world.geometry()), &settings, &mut |_| ())
+}
+
+fn mean(rendering: &Rendering) -> [f64; 3] {
+    let n = rendering.picture.rgb.len() as f64;
+    std::array::from_fn(|c| rendering.picture.rgb.iter().map(|p| f64::from(p[c])).sum::<f64>() / n)
+}
+
+/// A Cornell box with one of everything: a mirror, a rough metal, a mixture, a sky seen through the open front.
+fn varied() -> Scene {
+    let mut scene = cornell_box(48, 8);
+    scene.environment = Rgb::new(0.2, 0.3, 0.5);
+    let lobe = |weight, model| LobeSpec { weight, model };
+    let named = |scene: &mut Scene, name: &str, lobes: Vec<LobeSpec>| {
+        scene.materials.iter_mut().find(|m| m.name == name).expect("a material of the shipped scene").lobes = lobes;
+    };
+    let mirror = Model::Mirror { reflectance: Color::Constant(Rgb::new(0.9, 0.8, 0.7)) };
+    let metal = Model::Conductor {
+        fresnel: FresnelSpec::Conductor { eta: Rgb::new(0.2, 0.9, 1.1), k: Rgb::new(3.9, 2.4, 2.3) },
+        alpha_x: 0.1,
+        alpha_y: 0.3,
+    };
+    let gloss = Model::Conductor {
+        fresnel: FresnelSpec::Schlick { f0: Rgb::new(0.05, 0.05, 0.05) },
+        alpha_x: 0.2,
+        alpha_y: 0.2,
+    };
+    let paint = Model::Diffuse { base_color: Color::Constant(Rgb::new(0.5, 0.4, 0.3)) };
+    named(&mut scene, "red", vec![lobe(1.0, mirror)]);
+    named(&mut scene, "green", vec![lobe(1.0, metal)]);
+    named(&mut scene, "white", vec![lobe(1.0, paint), lobe(0.8, gloss)]);
+    scene
+}
+
+#[test]
+fn threads_backends_and_plans_never_change_a_picture() {
+    for scene in [cornell_box(48, 8), varied()] {
+        let expected = rendered(&scene, Backend::Obvhs, |s| s.threads = 1).stats.film_hash;
+        for backend in Backend::ALL {
+            for threads in [1, 2, 3] {
+                let hash = rendered(&scene, backend, |s| s.threads = threads).stats.film_hash;
+                assert_eq!(hash, expected, "{backend}, {threads} threads");
+            }
+            let hash = rendered(&scene, backend, |s| s.plan = Plan::everything()).stats.film_hash;
+            assert_eq!(hash, expected, "{backend}, every effect");
+        }
+        assert_ne!(rendered(&scene, Backend::Obvhs, |s| s.seed = 1).stats.film_hash, expected, "another seed");
+    }
+}
+
+#[test]
+fn a_crop_has_the_pixels_of_the_whole_picture() {
+    let scene = cornell_box(40, 3);
+    let whole = rendered(&scene, Backend::Obvhs, |_| ()).picture;
+    let crop = Crop { x0: 5, x1: 31, y0: 11, y1: 29 };
+    let part = rendered(&scene, Backend::Obvhs, |s| s.crop = Some(crop)).picture;
+    assert_eq!((part.width, part.height), (26, 18));
+    for y in 0..part.height {
+        for x in 0..part.width {
+            let at = |w: u32, x: u32, y: u32| (y * w + x) as usize;
+            assert_eq!(part.rgb[at(part.width, x, y)], whole.rgb[at(whole.width, x + crop.x0, y + crop.y0)]);
+        }
+    }
+}
+
+/// The scene scaled about its origin and then moved.
+fn moved(scene: &Scene, scale: f64, by: DVec3) -> Scene {
+    let mut scene = scene.clone();
+    let map = DAffine3::from_scale_rotation_translation(DVec3::splat(scale), glam::DQuat::IDENTITY, by);
+    for instance in &mut scene.instances {
+        instance.transform = map * instance.transform;
+    }
+    scene.camera.origin = map.transform_point3(scene.camera.origin);
+    scene.camera.target = map.transform_point3(scene.camera.target);
+    scene
+}
+
+#[test]
+fn scale_and_place_do_not_change_the_mean() {
+    let scene = cornell_box(64, 16);
+    let original = mean(&rendered(&scene, Backend::Obvhs, |_| ()));
+    let far = DVec3::new(1e5, -1e5, 1e5);
+    for (scale, by) in [1e-4, 1e-2, 1e2, 1e5].map(|s| (s, DVec3::ZERO)).into_iter().chain([(1.0, far)]) {
+        let got = mean(&rendered(&moved(&scene, scale, by), Backend::Obvhs, |_| ()));
+        for c in 0..3 {
+            let off = got[c] / original[c] - 1.0;
+            assert!(off.abs() < 1e-3, "scale {scale}, moved by {by}: channel {c} is off by {off:e}");
+        }
+    }
+}
+
+#[test]
+fn no_light_leaks_into_a_closed_black_box() {
+    // The camera sits inside a closed box under a bright sky. All albedos are 1, so paths live long and touch every edge.
+    let mut scene = cornell_box(32, 64);
+    let room = scene.meshes[0].clone();
+    let (mut mesh, first) = (room.clone(), room.positions.len() as u32);
+    // A front wall closes the room; the lamp goes dark.
+    mesh.positions.extend([[-1.0, -1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]]);
+    mesh.triangles.extend([[first, first + 2, first + 1], [first, first + 3, first + 2]]);
+    mesh.materials.extend([0, 0]);
+    scene.meshes[0] = mesh;
+    scene.camera.origin = DVec3::new(0.0, 0.0, 0.9);
+    scene.environment = Rgb::new(1.0, 1.0, 1.0);
+    scene.integrator.max_depth = 16;
+    scene.integrator.russian_roulette = false;
+    for m in &mut scene.materials {
+        m.emission = Rgb::zero();
+        m.two_sided = true;
+        m.lobes = vec![LobeSpec { weight: 1.0, model: Model::Diffuse { base_color: Color::Constant(Rgb::splat(1.0)) } }];
+    }
+    for (scale, by) in [(1.0, DVec3::ZERO), (1e-4, DVec3::ZERO), (1e5, DVec3::ZERO), (1.0, DVec3::splat(1e5))] {
+        let rendering = rendered(&moved(&scene, scale, by), Backend::Obvhs, |_| ());
+        let bright = rendering.stats.largest.len();
+        assert_eq!(bright, 0, "at scale {scale}, moved by {by}: {:?}", rendering.stats.largest);
+    }
+}
+
+#[test]
+fn russian_roulette_is_unbiased() {
+    let mut scene = cornell_box(32, 64);
+    scene.integrator.max_depth = 32;
+    let run = |russian_roulette| -> Vec<[f64; 3]> {
+        let one = |seed| {
+            mean(&rendered(&scene, Backend::Obvhs, |s| {
+                s.seed = seed;
+                s.russian_roulette = russian_roulette;
+            }))
+        };
+        (0..16).map(one).collect()
+    };
+    let (with, without) = (run(true), run(false));
+    for c in 0..3 {
+        let moments = |runs: &[[f64; 3]]| {
+            let m = runs.iter().map(|r| r[c]).sum::<f64>() / 16.0;
+            (m, runs.iter().map(|r| (r[c] - m).powi(2)).sum::<f64>() / 15.0 / 16.0)
+        };
+        let ((a, va), (b, vb)) = (moments(&with), moments(&without));
+        // Three channels at 0.01 in all, two-sided, 30 degrees of freedom: t = 3.2.
+        assert!((a - b).abs() < 3.2 * (va + vb).sqrt(), "channel {c}: {a} against {b}");
+    }
+}
+
+#[test]
+fn a_sample_that_is_dropped_is_counted() {
+    let rendering = rendered(&cornell_box(16, 4), Backend::Obvhs, |_| ());
+    assert_eq!(rendering.stats.dropped_samples, 0);
+    assert_eq!(rendering.stats.samples, 16 * 16 * 4);
+    assert!(rendering.stats.lanes_full > 0.9, "{}", rendering.stats.lanes_full);
+    assert!(rendering.stats.largest.is_sorted_by(|a, b| a.value >= b.value));
+}
