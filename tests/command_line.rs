@@ -327,3 +327,17 @@ fn a_validation_writes_its_report_and_a_failure_is_exit_code_3() {
     assert!(run.out.contains("FAIL  planted-failure"), "{}", run.out);
     assert_eq!(run.code, 3);
 }
+
+#[test]
+fn an_old_processor_gets_a_sentence_instead_of_an_illegal_instruction() {
+    if !cfg!(target_feature = "avx2") {
+        return;
+    }
+    let Ok(output) = std::process::Command::new("qemu-x86_64").args(["-cpu", "Nehalem", PROGRAM, "--version"]).output() else {
+        println!("not run: qemu-x86_64 (package qemu-user) is not installed");
+        return;
+    };
+    let err = String::from_utf8_lossy(&output.stderr);
+    assert!(err.contains("needs a processor with AVX2") && err.contains("lacks AVX2 FMA"), "{err}");
+    assert_eq!(output.status.code(), Some(1));
+}

@@ -15,7 +15,7 @@ mod render;
 mod usage;
 mod validate;
 
-pub use cpu::missing_instructions;
+pub use cpu::processor_suffices;
 
 use clap::{Parser, Subcommand};
 use std::io;
@@ -39,6 +39,7 @@ enum Command {
 }
 
 /// Runs the command line of this process.
+#[inline(never)] // its instructions must not move before the check of the processor
 pub fn run() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,

@@ -5,9 +5,5 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     // First of all: on an older processor anything else may end in an illegal instruction.
-    if let Some(sentence) = gonio_cli::missing_instructions() {
-        eprintln!("error: {sentence}");
-        return ExitCode::FAILURE;
-    }
-    gonio_cli::run()
+    if gonio_cli::processor_suffices() { gonio_cli::run() } else { ExitCode::FAILURE }
 }

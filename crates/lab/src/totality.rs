@@ -63,7 +63,8 @@ pub(crate) fn parameter(p: &Parameter, random: &mut Random) -> f32 {
 }
 
 /// The cosines that make formulas underflow: a direction in the domain may graze as closely as `f32` can say.
-const TINY: [f32; 7] = [1e-45, 1e-40, f32::MIN_POSITIVE, 1e-30, 1e-22, 1e-18, 1e-12];
+const TINY: [f32; 12] =
+    [1e-45, 1e-40, f32::MIN_POSITIVE, 1e-30, 1e-22, 1e-18, 2e-18, 1e-14, 1e-12, 2e-12, 1.1e-10, 1e-9];
 
 /// How many lanes returned something that is not finite or negative, over one species, inside the domain.
 pub(crate) fn measure_inside(parameters: &[Parameter], build: Build<F32x8>, run: &Run) -> Finding {

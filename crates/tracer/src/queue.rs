@@ -18,6 +18,10 @@ pub(crate) struct Paths {
     pub(crate) pdf_environment: F32x8,
     /// Which path of the tile.
     pub(crate) path: U32x8,
+    /// x + 65536·y of its pixel.
+    pub(crate) pixel: U32x8,
+    /// Its sample number.
+    pub(crate) sample: U32x8,
 }
 
 /// The rays of one bounce.
@@ -197,10 +201,10 @@ impl<'a> Batch<'a> {
         F32x8::from_fn(|i| field(self.paths[i]).lane(self.lane[i]))
     }
 
-    /// Which paths of the tile these are.
+    /// An integer field of the path states, brought together.
     #[inline(always)]
-    pub(crate) fn path_numbers(&self) -> [u32; F32x8::LANES] {
-        each_lane(|i| self.paths[i].path.lane(self.lane[i]))
+    pub(crate) fn path_int(&self, field: impl Fn(&Paths) -> &U32x8) -> U32x8 {
+        U32x8::from_fn(|i| field(self.paths[i]).lane(self.lane[i]))
     }
 
     /// A field of the hits, brought together.

@@ -10,7 +10,7 @@ use crate::plan::Plan;
 use crate::queue::{Batch, Order, Paths, Queue, ShadowQueue};
 use crate::sampler::{Purpose, Sampler};
 use crate::scene::Scene;
-use crate::shade::{self, Context, Tile};
+use crate::shade::{self, Context, Gathered};
 use crate::stats::{LargeSample, RenderStats, TileStats};
 use crate::world::{World, splat};
 use gonio_accel::{Accel, Hit8, Ray8, RayKind};
@@ -51,7 +51,7 @@ pub struct RenderSettings {
     pub russian_roulette: bool,
     /// Threads; 0 for all that the machine has.
     pub threads: usize,
-    /// The part of the picture to render; `None` for all of it.
+    /// The part of the picture to render, as far as it lies inside; `None` for all of it.
     pub crop: Option<Crop>,
     /// Which effects to look at; at least the world's own plan.
     pub plan: Plan,
@@ -116,7 +116,12 @@ pub fn render(
     let start = Instant::now();
     let film = world.film;
     let whole = Crop { x0: 0, x1: film.width, y0: 0, y1: film.height };
-    let crop = settings.crop.unwrap_or(whole);
+    let crop = settings.crop.map_or(whole, |c| Crop {
+        x0: c.x0.min(c.x1).min(film.width),
+        x1: c.x1.min(film.width),
+        y0: c.y0.min(c.y1).min(film.height),
+        y1: c.y1.min(film.height),
+    });
     let ctx = Context {
         world,
         plan: settings.plan,
@@ -251,6 +256,8 @@ impl TileWorker {
                     pdf: F32x8::ZERO,
                     pdf_environment: F32x8::ZERO,
                     path,
+                    pixel,
+                    sample,
                 },
             );
         }
@@ -272,10 +279,10 @@ impl TileWorker {
 
             self.next.clear();
             self.shadow.clear();
-            let mut tile = Tile { pixel: &self.pixel, sample: &self.sample, radiance: &mut self.radiance };
+            let mut gathered = Gathered(&mut self.radiance);
             if ctx.plan.environment {
                 for lanes in self.order.range(0, 1).chunks(F32x8::LANES) {
-                    shade::miss(ctx, &Batch::new(lanes, &self.queue, &self.hits), &mut tile);
+                    shade::miss(ctx, &Batch::new(lanes, &self.queue, &self.hits), &mut gathered);
                 }
             }
             let mut from = 0;
@@ -284,7 +291,7 @@ impl TileWorker {
                 let to = from + materials[from..].iter().take_while(|m| m.variant == variant).count();
                 for lanes in self.order.range(1 + from, 1 + to).chunks(F32x8::LANES) {
                     let batch = Batch::new(lanes, &self.queue, &self.hits);
-                    let used = shade::hit(ctx, depth, &batch, &mut tile, &mut self.shadow, &mut self.next);
+                    let used = shade::hit(ctx, depth, &batch, &mut gathered, &mut self.shadow, &mut self.next);
                     stats.closure_lanes += u64::from(used);
                     stats.closure_calls += u64::from(used > 0);
                 }
@@ -298,7 +305,7 @@ impl TileWorker {
                 self.shadow.rays.iter().zip(&self.blocked).zip(&self.shadow.arriving).zip(&self.shadow.path)
             {
                 stats.shadow_rays += u64::from(ray.mask.to_bits().count_ones());
-                tile.gather(path, ray.mask & !*blocked, *light);
+                gathered.add(path, ray.mask & !*blocked, *light);
             }
             std::mem::swap(&mut self.queue, &mut self.next);
         }

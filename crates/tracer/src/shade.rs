@@ -32,26 +32,19 @@ pub(crate) struct Context<'a> {
     pub(crate) russian_roulette: bool,
 }
 
-/// Where paths of a tile lie in the picture, and what they have gathered.
-pub(crate) struct Tile<'a> {
-    /// x + 65536·y of each path's pixel.
-    pub(crate) pixel: &'a [u32],
-    /// Sample number of each path.
-    pub(crate) sample: &'a [u32],
-    /// Gathered radiance of each path.
-    pub(crate) radiance: &'a mut [[f32; 3]],
-}
+/// The gathered radiance of a tile's paths.
+pub(crate) struct Gathered<'a>(pub(crate) &'a mut [[f32; 3]]);
 
-impl Tile<'_> {
+impl Gathered<'_> {
     /// Adds light to those lanes' paths.
     #[inline(always)]
-    pub(crate) fn gather(&mut self, path: &[u32; F32x8::LANES], mask: Mask8, light: Rgb<F32x8>) {
-        let (bits, [r, g, b]) = (mask.to_bits(), [light.r, light.g, light.b].map(F32x8::to_array));
-        for lane in 0..F32x8::LANES {
-            if bits >> lane & 1 != 0 {
-                let sum = &mut self.radiance[path[lane] as usize];
-                *sum = [sum[0] + r[lane], sum[1] + g[lane], sum[2] + b[lane]];
-            }
+    pub(crate) fn add(&mut self, path: &[u32; F32x8::LANES], mask: Mask8, light: Rgb<F32x8>) {
+        let (mut bits, [r, g, b]) = (mask.to_bits(), [light.r, light.g, light.b].map(F32x8::to_array));
+        while bits != 0 {
+            let lane = bits.trailing_zeros() as usize % F32x8::LANES;
+            bits &= bits - 1;
+            let sum = &mut self.0[path[lane] as usize];
+            *sum = [sum[0] + r[lane], sum[1] + g[lane], sum[2] + b[lane]];
         }
     }
 }
@@ -68,11 +61,10 @@ struct Incoming {
 
 impl Incoming {
     #[inline(always)]
-    fn new(batch: &Batch, tile: &Tile) -> Self {
-        let path = batch.path_numbers();
+    fn new(batch: &Batch) -> Self {
         Self {
-            pixel: U32x8::from_fn(|l| tile.pixel[path[l] as usize]),
-            sample: U32x8::from_fn(|l| tile.sample[path[l] as usize]),
+            pixel: batch.path_int(|p| &p.pixel),
+            sample: batch.path_int(|p| &p.sample),
             dir: Vec3::new(batch.ray(|r| &r.dir.x), batch.ray(|r| &r.dir.y), batch.ray(|r| &r.dir.z)),
             throughput: Rgb::new(
                 batch.path(|p| &p.throughput.r),
@@ -80,7 +72,7 @@ impl Incoming {
                 batch.path(|p| &p.throughput.b),
             ),
             pdf: batch.path(|p| &p.pdf),
-            path,
+            path: batch.path_int(|p| &p.path).to_array(),
         }
     }
 
@@ -93,11 +85,11 @@ impl Incoming {
 
 /// Paths that left the world receive the environment.
 #[inline(always)]
-pub(crate) fn miss(ctx: &Context, batch: &Batch, tile: &mut Tile) {
-    let incoming = Incoming::new(batch, tile);
+pub(crate) fn miss(ctx: &Context, batch: &Batch, gathered: &mut Gathered) {
+    let incoming = Incoming::new(batch);
     let weight = incoming.weight(batch.path(|p| &p.pdf_environment));
     let radiance = splat_rgb(ctx.world.lights.environment());
-    tile.gather(&incoming.path, batch.live, incoming.throughput * radiance * weight);
+    gathered.add(&incoming.path, batch.live, incoming.throughput * radiance * weight);
 }
 
 /// Paths that met materials of one variant: emission, light sample, scattering. `depth` counts the scattering events
@@ -107,15 +99,15 @@ pub(crate) fn hit(
     ctx: &Context,
     depth: u32,
     batch: &Batch,
-    tile: &mut Tile,
+    gathered: &mut Gathered,
     shadow: &mut ShadowQueue,
     next: &mut Queue,
 ) -> u32 {
-    let incoming = Incoming::new(batch, tile);
+    let incoming = Incoming::new(batch);
     let wo = -incoming.dir;
     let points = ShadingPoints::new(ctx.world, ctx.plan, batch, wo);
     if ctx.plan.area_lights {
-        receive_emission(ctx, batch, &incoming, &points, tile);
+        receive_emission(ctx, batch, &incoming, &points, gathered);
     }
     if depth >= ctx.max_depth {
         return 0;
@@ -180,7 +172,7 @@ pub(crate) fn hit(
 
 /// Light that a hit triangle emits towards the path, from the front of its winding.
 #[inline(always)]
-fn receive_emission(ctx: &Context, batch: &Batch, incoming: &Incoming, points: &ShadingPoints, tile: &mut Tile) {
+fn receive_emission(ctx: &Context, batch: &Batch, incoming: &Incoming, points: &ShadingPoints, gathered: &mut Gathered) {
     let materials = each_lane(|l| &ctx.world.materials[points.material[l] as usize]);
     if !materials.iter().any(|m| m.emits()) {
         return;
@@ -193,7 +185,7 @@ fn receive_emission(ctx: &Context, batch: &Batch, incoming: &Incoming, points: &
     let pdf_area = emission.luminance() * F32x8::splat(ctx.world.lights.pdf_area_per_luminance());
     let pdf_light = pdf_area * points.t * points.t / points.cos_geometric;
     let mask = batch.live & points.front & emission.largest().gt(F32x8::ZERO);
-    tile.gather(&incoming.path, mask, incoming.throughput * emission * incoming.weight(pdf_light));
+    gathered.add(&incoming.path, mask, incoming.throughput * emission * incoming.weight(pdf_light));
 }
 
 /// A direction in which light is asked for.
@@ -289,7 +281,7 @@ fn scatter(
         };
         next.push(
             Ray8 { mask: alive, ..Ray8::new(origin, wi) },
-            Paths { throughput, pdf: value.pdf.or_zero(continuous), pdf_environment, path: U32x8::new(incoming.path) },
+            Paths { throughput, pdf: value.pdf.or_zero(continuous), pdf_environment, path: U32x8::new(incoming.path), pixel: incoming.pixel, sample: incoming.sample },
         );
     }
 }

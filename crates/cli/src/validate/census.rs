@@ -25,8 +25,8 @@ use std::time::Instant;
 
 /// Name and meaning of the instruments in this file.
 pub(super) const INSTRUMENTS: [(&str, &str); 2] = [
-    ("census", "Every ray-casting backend finds the hit that brute force finds, bit for bit, and the same blocked rays."),
-    ("leaks", "No ray leaves a closed mesh, wherever it is aimed."),
+    ("census", "every ray-casting backend finds the hit that brute force finds, bit for bit, and the same blocked rays"),
+    ("leaks", "no ray leaves a closed mesh, wherever it is aimed"),
 ];
 
 /// Runs the census of all backends and hands each check to `sink`.

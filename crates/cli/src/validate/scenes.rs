@@ -24,9 +24,9 @@ use std::time::Instant;
 
 /// Name and meaning of the instruments in this file.
 pub(super) const INSTRUMENTS: [(&str, &str); 3] = [
-    ("scene-furnace", "Rendered furnaces have their analytic radiance in every block of pixels, with every backend."),
-    ("scene-hash", "Backend, number of threads and pruning of the plan do not change a bit of a picture."),
-    ("scene-samples", "Rendering drops no sample as not finite or out of range."),
+    ("scene-furnace", "rendered furnaces have their analytic radiance in every block of pixels, with every backend"),
+    ("scene-hash", "backend, number of threads and pruning of the plan do not change a bit of a picture"),
+    ("scene-samples", "rendering drops no sample as not finite or out of range"),
 ];
 
 /// A picture for the report.

@@ -38,7 +38,7 @@ impl<R: Real> Lobe<R> for Conductor<R> {
         // wo·m = |h|/2 for unit directions: no cancellation at grazing, and never above 1 but by rounding.
         let cos_m = (h2.sqrt() * R::lit(0.5)).min(R::ONE);
         let f = self.fresnel.reflectance(cos_m);
-        let f_cos = f * (d * self.ggx.vis(wo.z, s_o, wi.z, s_i) * wi.z);
+        let f_cos = f * (d * self.ggx.vis_cos_i(wo.z, s_o, wi.z, s_i));
         let pdf = self.ggx.pdf_visible_reflected(d, wo.z, s_o);
         Value { f_cos, pdf }.or_zero(both_above(wo, wi))
     }

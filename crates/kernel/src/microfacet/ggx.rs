@@ -14,7 +14,7 @@
 //! G₁ = 2w_z/(w_z + s(w)) and needs no division by w_z.
 
 use crate::math::sin_cos_turns;
-use crate::real::Real;
+use crate::real::{Mask, Real};
 use crate::vec3::Vec3;
 
 /// A GGX surface of widths alpha_x and alpha_y, each in [1e-4, 1].
@@ -30,6 +30,13 @@ impl<R: Real> Ggx<R> {
     /// D of the half vector h = wo + wi, not normalised, with |h|² given \[1/sr\].
     #[inline(always)]
     pub fn d(&self, h: Vec3<R>, h_length2: R) -> R {
+        // Both directions nearly in the surface and opposite: the squares of h would underflow, D does not depend on |h|.
+        let tiny = h_length2.lt(R::lit(1e-12));
+        let (mut h, mut h_length2) = (h, h_length2);
+        if tiny.any() {
+            h = Vec3::select(tiny, h.normalize_or(Vec3::unit_z()), h);
+            h_length2 = R::select(tiny, R::ONE, h_length2);
+        }
         // With a = α_x α_y: D = a³|h|⁴/(π (α_y²h_x² + α_x²h_y² + a²h_z²)²), one division instead of four.
         let a = self.alpha_x * self.alpha_y;
         let x = self.alpha_y * h.x;
@@ -48,10 +55,14 @@ impl<R: Real> Ggx<R> {
         x.mul_add(x, y.mul_add(y, w.z * w.z)).sqrt()
     }
 
-    /// Height-correlated G₂/(4 cos_o cos_i), with s(wo) and s(wi) given: 1/(2(cos_i s(wo) + cos_o s(wi))).
+    /// Height-correlated G₂/(4 cos_o), which is vis · cos_i, with s(wo) and s(wi) given:
+    /// cos_i/(2(cos_i s(wo) + cos_o s(wi))).
     #[inline(always)]
-    pub fn vis(&self, cos_o: R, s_o: R, cos_i: R, s_i: R) -> R {
-        R::lit(0.5) / cos_i.mul_add(s_o, cos_o * s_i)
+    pub fn vis_cos_i(&self, cos_o: R, s_o: R, cos_i: R, s_i: R) -> R {
+        // The ratio stays finite where the products of denormal cosines and widths would underflow.
+        let lift = R::lit(1e20);
+        let (cos_o, cos_i) = (cos_o * lift, cos_i * lift);
+        R::lit(0.5) * cos_i / cos_i.mul_add(s_o, cos_o * s_i)
     }
 
     /// A microfacet normal, unit, distributed as those visible from wo (above the surface).
