@@ -63,7 +63,7 @@ fn telling_rays(geometry: &Geometry, count: usize, random: &mut Random) -> Vec<R
             if i % 5 == 0 {
                 ray.t_min = F32x8::splat(0.3);
                 ray.t_max = F32x8::splat(2.0);
-                ray.mask = Mask8::from_bits(i as u32 / 5 & 0xff);
+                ray.mask = Mask8::from_bits((i as u32 / 5) & 0xff);
             }
             ray
         })
@@ -203,7 +203,8 @@ fn a_long_tail_of_shrinking_triangles_does_not_overflow_the_stack() {
         let s = 0.5_f32.powi(i);
         [[s, 0.0, 0.0], [s, s, 0.0], [s, 0.0, s]]
     });
-    let mesh = Mesh { positions: positions.collect(), triangles: (0..120).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect() };
+    let mesh =
+        Mesh { positions: positions.collect(), triangles: (0..120).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect() };
     let geometry = geometry(mesh);
     let rays = telling_rays(&geometry, 8_000, &mut Random(2));
     let expected = hits(&Brute::new(&geometry), &rays);

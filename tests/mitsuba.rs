@@ -48,7 +48,8 @@ fn welch(a: &Moments, b: &Moments, n: f64) -> f64 {
 
 #[test]
 fn the_cornell_box_agrees_with_mitsuba() {
-    let text = std::fs::read_to_string(repository("tests/reference/cornell_box.json")).expect("the reference is shipped");
+    let text =
+        std::fs::read_to_string(repository("tests/reference/cornell_box.json")).expect("the reference is shipped");
     let reference: Reference = serde_json::from_str(&text).expect("the reference is JSON");
     let scene = cornell_box(reference.width, 16);
     let world = World::new(&scene).expect("the shipped scene is sound");

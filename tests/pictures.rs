@@ -119,7 +119,8 @@ fn no_light_leaks_into_a_closed_black_box() {
     for m in &mut scene.materials {
         m.emission = Rgb::zero();
         m.two_sided = true;
-        m.lobes = vec![LobeSpec { weight: 1.0, model: Model::Diffuse { base_color: Color::Constant(Rgb::splat(1.0)) } }];
+        m.lobes =
+            vec![LobeSpec { weight: 1.0, model: Model::Diffuse { base_color: Color::Constant(Rgb::splat(1.0)) } }];
     }
     for (scale, by) in [(1.0, DVec3::ZERO), (1e-4, DVec3::ZERO), (1e5, DVec3::ZERO), (1.0, DVec3::splat(1e5))] {
         let rendering = rendered(&moved(&scene, scale, by), Backend::Obvhs, |_| ());

@@ -1,9 +1,9 @@
 //! The oracle: every ray against every triangle, in order. Slow, and too simple to be wrong.
 
+use crate::Accel;
 use crate::geometry::{Geometry, TriangleId, WorldTriangle};
 use crate::ray::{Hit, Hit8, Opacity, Ray8, RayKind};
 use crate::triangle::{Beam, Crossing, intersect};
-use crate::Accel;
 use gonio_kernel::{F32x8, Mask, Mask8, Real, U32x8, Vec3};
 
 /// All triangles in a list. Cost per ray is proportional to their number.
@@ -96,13 +96,7 @@ pub(crate) fn filtered(filter: &dyn Opacity, packet: usize, hit: Mask8, c: &Cros
 
 /// One lane of a crossing.
 pub(crate) fn scalar_hit(c: &Crossing, lane: usize, id: TriangleId) -> Hit {
-    Hit {
-        t: c.t.lane(lane),
-        bary: c.bary().map(|b| b.lane(lane)),
-        prim: id.prim,
-        mesh: id.mesh,
-        instance: id.instance,
-    }
+    Hit { t: c.t.lane(lane), bary: c.bary().map(|b| b.lane(lane)), prim: id.prim, mesh: id.mesh, instance: id.instance }
 }
 
 /// The bounds of all corners; an empty list has the bounds of a point at the origin.

@@ -12,8 +12,8 @@ use crate::brute::scalar_hit;
 use crate::geometry::Geometry;
 use crate::ray::{Hit, Hit8, NO_HIT, Opacity, Ray8, RayKind};
 use crate::triangle::{Beam, intersect};
-use gonio_kernel::{F32x8, Mask8, Real, U32x8, Vec3};
 use few::Few;
+use gonio_kernel::{F32x8, Mask8, Real, U32x8, Vec3};
 use tree::{Child, Node, Tree};
 
 /// A tree of eight-wide nodes over the triangles of a geometry, or a list of a few.
@@ -49,12 +49,8 @@ impl Accel for Obvhs {
             let beam = Beam::new(ray.origin, ray.dir, self.tree.lo, self.tree.hi);
             let mut found = [MISS; F32x8::LANES];
             for_each_lane(ray.mask, |lane| {
-                found[lane] = self.closest_of_one(
-                    &beam.splat_lane(lane),
-                    ray.t_min.lane(lane),
-                    ray.t_max.lane(lane),
-                    &mut stack,
-                );
+                found[lane] =
+                    self.closest_of_one(&beam.splat_lane(lane), ray.t_min.lane(lane), ray.t_max.lane(lane), &mut stack);
             });
             *hit = side_by_side(&found);
         }
@@ -79,8 +75,7 @@ impl Accel for Obvhs {
     }
 }
 
-const MISS: Hit =
-    Hit { t: f32::INFINITY, bary: [0.0; 2], prim: NO_HIT, mesh: NO_HIT, instance: NO_HIT };
+const MISS: Hit = Hit { t: f32::INFINITY, bary: [0.0; 2], prim: NO_HIT, mesh: NO_HIT, instance: NO_HIT };
 
 #[inline(always)]
 fn for_each_lane(mask: Mask8, mut f: impl FnMut(usize)) {

@@ -64,14 +64,7 @@ impl Beam {
         // A direction without an x never leaves its slab: a large finite slope says so without 0·∞.
         let slope = |d: F32x8| d.abs().recip().min(F32x8::splat(1e30)).copysign(d);
         let inverse = Vec3::new(slope(dir.x), slope(dir.y), slope(dir.z));
-        Self {
-            origin,
-            dir,
-            across: [u, v],
-            inverse,
-            pad: inverse.abs() * pad,
-            slack: reach * F32x8::splat(SLACK),
-        }
+        Self { origin, dir, across: [u, v], inverse, pad: inverse.abs() * pad, slack: reach * F32x8::splat(SLACK) }
     }
 
     /// Lane `lane` of these rays, in all eight lanes.

@@ -36,8 +36,12 @@ pub(crate) fn direction(text: &str) -> Result<[f64; 3], String> {
 pub(crate) fn count(text: &str) -> Result<u64, String> {
     let plain = text.parse::<u64>().ok();
     // Up to 2⁵³ an f64 holds every integer.
-    let scientific = text.parse::<f64>().ok().filter(|x| x.fract() == 0.0 && (1.0..=9_007_199_254_740_992.0).contains(x));
-    plain.filter(|&n| n > 0).or(scientific.map(|x| x as u64)).ok_or_else(|| "a number of samples is an integer, at least 1".to_owned())
+    let scientific =
+        text.parse::<f64>().ok().filter(|x| x.fract() == 0.0 && (1.0..=9_007_199_254_740_992.0).contains(x));
+    plain
+        .filter(|&n| n > 0)
+        .or(scientific.map(|x| x as u64))
+        .ok_or_else(|| "a number of samples is an integer, at least 1".to_owned())
 }
 
 #[cfg(test)]

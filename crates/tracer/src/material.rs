@@ -104,11 +104,7 @@ fn assemble<R: Real>(
     for (slot, lobe) in pattern.lobes.iter().enumerate() {
         let weight = number(slot, &|l| l.weight);
         let rgb = |read: &dyn Fn(&LobeSpec) -> Rgb<f32>| {
-            Rgb::new(
-                number(slot, &|l| read(l).r),
-                number(slot, &|l| read(l).g),
-                number(slot, &|l| read(l).b),
-            )
+            Rgb::new(number(slot, &|l| read(l).r), number(slot, &|l| read(l).g), number(slot, &|l| read(l).b))
         };
         let any: AnyLobe<R> = match &lobe.model {
             Model::Diffuse { .. } => Lambert::new(color(slot)).into(),

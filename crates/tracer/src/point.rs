@@ -107,11 +107,10 @@ impl ShadingPoints {
             let b0 = F32x8::ONE - bary[0] - bary[1];
             let blend = |x: [F32x8; 3]| b0.mul_add(x[0], bary[0].mul_add(x[1], bary[1] * x[2]));
             uv = [blend(u), blend(v)];
-            let anisotropic = Mask8::from_bits(
-                (0..F32x8::LANES).fold(0, |bits, l| {
+            let anisotropic =
+                Mask8::from_bits((0..F32x8::LANES).fold(0, |bits, l| {
                     bits | u32::from(world.materials[triangles[l].material as usize].anisotropic) << l
-                }),
-            );
+                }));
             if plan.tangents && anisotropic.any() {
                 // ∂p/∂u up to a positive factor: solve e₁ = Δu₁ ∂u + Δv₁ ∂v, e₂ likewise.
                 let (dv1, dv2) = (v[1] - v[0], v[2] - v[0]);
@@ -126,6 +125,15 @@ impl ShadingPoints {
             }
         }
         let material = each_lane(|l| triangles[l].material);
-        Self { point: SurfacePoint::new(&corners, bary), normal, frame, front, cos_geometric: cos.abs(), t, uv, material }
+        Self {
+            point: SurfacePoint::new(&corners, bary),
+            normal,
+            frame,
+            front,
+            cos_geometric: cos.abs(),
+            t,
+            uv,
+            material,
+        }
     }
 }

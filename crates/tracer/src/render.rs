@@ -177,9 +177,8 @@ fn develop(crop: Crop, tiles: &[FilmTile], threads: usize, start: Instant) -> Re
     for tile in tiles {
         stats.add(&tile.stats);
         for (row, line) in tile.pixels.chunks(tile.width as usize).enumerate() {
-            let at = (tile.y0 - crop.y0) as usize * width as usize
-                + row * width as usize
-                + (tile.x0 - crop.x0) as usize;
+            let at =
+                (tile.y0 - crop.y0) as usize * width as usize + row * width as usize + (tile.x0 - crop.x0) as usize;
             pixels[at..at + line.len()].copy_from_slice(line);
         }
     }

@@ -115,9 +115,11 @@ pub(crate) fn hit(
 
     let mut live = batch.live;
     if ctx.plan.one_sided {
-        let two_sided = points.material.iter().enumerate().fold(0, |bits, (lane, &m)| {
-            bits | u32::from(ctx.world.materials[m as usize].two_sided) << lane
-        });
+        let two_sided = points
+            .material
+            .iter()
+            .enumerate()
+            .fold(0, |bits, (lane, &m)| bits | u32::from(ctx.world.materials[m as usize].two_sided) << lane);
         live = live & (points.front | Mask8::from_bits(two_sided));
     }
     if !live.any() {
@@ -172,7 +174,13 @@ pub(crate) fn hit(
 
 /// Light that a hit triangle emits towards the path, from the front of its winding.
 #[inline(always)]
-fn receive_emission(ctx: &Context, batch: &Batch, incoming: &Incoming, points: &ShadingPoints, gathered: &mut Gathered) {
+fn receive_emission(
+    ctx: &Context,
+    batch: &Batch,
+    incoming: &Incoming,
+    points: &ShadingPoints,
+    gathered: &mut Gathered,
+) {
     let materials = each_lane(|l| &ctx.world.materials[points.material[l] as usize]);
     if !materials.iter().any(|m| m.emits()) {
         return;
@@ -281,7 +289,14 @@ fn scatter(
         };
         next.push(
             Ray8 { mask: alive, ..Ray8::new(origin, wi) },
-            Paths { throughput, pdf: value.pdf.or_zero(continuous), pdf_environment, path: U32x8::new(incoming.path), pixel: incoming.pixel, sample: incoming.sample },
+            Paths {
+                throughput,
+                pdf: value.pdf.or_zero(continuous),
+                pdf_environment,
+                path: U32x8::new(incoming.path),
+                pixel: incoming.pixel,
+                sample: incoming.sample,
+            },
         );
     }
 }

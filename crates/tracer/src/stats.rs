@@ -68,9 +68,7 @@ impl TileStats {
     fn keep(&mut self, sample: LargeSample) {
         // Ties by place, so that the list does not depend on the order of tiles.
         let key = |s: &LargeSample| (s.y, s.x, s.sample);
-        let before = |s: &LargeSample| {
-            s.value > sample.value || (s.value == sample.value && key(s) < key(&sample))
-        };
+        let before = |s: &LargeSample| s.value > sample.value || (s.value == sample.value && key(s) < key(&sample));
         let at = self.largest.partition_point(before);
         self.largest.insert(at, sample);
         self.largest.truncate(KEPT);

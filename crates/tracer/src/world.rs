@@ -144,15 +144,13 @@ impl World {
             .map(|&p| (to_world.transform_point3(p.into()) - center).as_vec3().to_array())
             .collect();
         let mirrored = to_world.matrix3.determinant() < 0.0;
-        let normal_matrix = DMat3::from(to_world.matrix3).inverse().transpose();
+        let normal_matrix = to_world.matrix3.inverse().transpose();
         let front = |t: &[u32; 3]| if mirrored { [t[0], t[2], t[1]] } else { *t };
         let triangles: Vec<[u32; 3]> = mesh.triangles.iter().map(front).collect();
 
         let corners = triangles.iter().map(|t| t.map(|v| Vec3::from(positions[v as usize])));
         self.triangles.extend(
-            corners
-                .zip(&mesh.materials)
-                .map(|(corners, &m)| Triangle { corners, material: order[m as usize] }),
+            corners.zip(&mesh.materials).map(|(corners, &m)| Triangle { corners, material: order[m as usize] }),
         );
         if self.plan.smooth_normals {
             let none = Vec3::new(0.0, 0.0, 0.0);
@@ -173,9 +171,10 @@ fn turn(normal_matrix: DMat3, n: [f32; 3]) -> Vec3<f32> {
 
 /// The middle of everything that is placed.
 fn center(scene: &Scene) -> DVec3 {
-    let placed = scene.instances.iter().flat_map(|i| {
-        scene.meshes[i.mesh].positions.iter().map(move |&p| i.transform.transform_point3(p.into()))
-    });
+    let placed = scene
+        .instances
+        .iter()
+        .flat_map(|i| scene.meshes[i.mesh].positions.iter().map(move |&p| i.transform.transform_point3(p.into())));
     let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for p in placed {
         lo = lo.min(p);

@@ -8,10 +8,10 @@
 use crate::brute::bounds;
 use crate::geometry::{Geometry, TriangleId, WorldTriangle};
 use gonio_kernel::{F32x8, Vec3};
+use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
-use obvhs::BvhBuildParams;
 
 /// How many children a node has, and how many triangles a block.
 const WIDTH: usize = F32x8::LANES;
@@ -157,9 +157,8 @@ impl Collapse<'_> {
                     Child((tree.nodes.len() - 1) as u32)
                 };
             }
-            let side = |s: usize| {
-                Vec3::new(F32x8::new(planes[0][s]), F32x8::new(planes[1][s]), F32x8::new(planes[2][s]))
-            };
+            let side =
+                |s: usize| Vec3::new(F32x8::new(planes[0][s]), F32x8::new(planes[1][s]), F32x8::new(planes[2][s]));
             tree.nodes[wide] = Node { planes: [side(0), side(1)], children };
         }
     }

@@ -20,7 +20,12 @@ pub(super) struct RowWriter {
 
 impl RowWriter {
     /// Opens the table and writes the header of a CSV.
-    pub(super) fn create(target: &Target, columns: &'static [&'static str], json: bool, precision: Precision) -> Result<Self> {
+    pub(super) fn create(
+        target: &Target,
+        columns: &'static [&'static str],
+        json: bool,
+        precision: Precision,
+    ) -> Result<Self> {
         let mut rows = Self { output: Output::create(target)?, name: target.to_string(), columns, json, precision };
         if !json {
             rows.line(&columns.join(","))?;
@@ -33,7 +38,8 @@ impl RowWriter {
         let mut cells: Vec<String> = numbers.into_iter().map(|x| self.precision.print(x)).collect();
         let line = if self.json {
             cells.extend(word.map(|word| format!("\"{word}\"")));
-            let pairs: Vec<_> = self.columns.iter().zip(&cells).map(|(name, cell)| format!("\"{name}\":{cell}")).collect();
+            let pairs: Vec<_> =
+                self.columns.iter().zip(&cells).map(|(name, cell)| format!("\"{name}\":{cell}")).collect();
             format!("{{{}}}", pairs.join(","))
         } else {
             cells.extend(word.map(str::to_owned));

@@ -8,9 +8,8 @@ use crate::usage::{count, direction, warn};
 use anyhow::Result;
 use std::path::PathBuf;
 
-const COLUMNS: &[&str] = &[
-    "wi_x", "wi_y", "wi_z", "f_cos_r", "f_cos_g", "f_cos_b", "pdf", "weight_r", "weight_g", "weight_b", "event",
-];
+const COLUMNS: &[&str] =
+    &["wi_x", "wi_y", "wi_z", "f_cos_r", "f_cos_g", "f_cos_b", "pdf", "weight_r", "weight_g", "weight_b", "event"];
 
 /// Sample a material.
 ///

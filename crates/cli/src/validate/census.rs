@@ -25,7 +25,10 @@ use std::time::Instant;
 
 /// Name and meaning of the instruments in this file.
 pub(super) const INSTRUMENTS: [(&str, &str); 2] = [
-    ("census", "every ray-casting backend finds the hit that brute force finds, bit for bit, and the same blocked rays"),
+    (
+        "census",
+        "every ray-casting backend finds the hit that brute force finds, bit for bit, and the same blocked rays",
+    ),
     ("leaks", "no ray leaves a closed mesh, wherever it is aimed"),
 ];
 
@@ -128,7 +131,9 @@ fn agreement(
     let found = compare(oracle, accel, family.kind(), |packet| rays::packet(specimen, family, seed, packet), count / 8);
     let detail = match found.first {
         Some(first) => first,
-        None => format!("{} rays, {:.0} % of them hit", found.rays, 100.0 * found.hits as f64 / found.rays.max(1) as f64),
+        None => {
+            format!("{} rays, {:.0} % of them hit", found.rays, 100.0 * found.hits as f64 / found.rays.max(1) as f64)
+        }
     };
     Finding { count: found.disagreements, limit: 0, at_least: false, meaning: "rays that disagree ≤", detail }
 }

@@ -36,7 +36,17 @@ pub(super) fn short(x: f64) -> String {
     } else if size < 1e6 && x.fract() == 0.0 {
         format!("{x:.0}")
     } else if (0.01..1000.0).contains(&size) {
-        format!("{:.*}", if size >= 100.0 { 1 } else if size >= 1.0 { 2 } else { 4 }, x)
+        format!(
+            "{:.*}",
+            if size >= 100.0 {
+                1
+            } else if size >= 1.0 {
+                2
+            } else {
+                4
+            },
+            x
+        )
     } else if size >= 1e300 {
         "∞".to_owned() // the reports' stand-in for it
     } else {
@@ -96,7 +106,9 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        for (x, text) in [(0.0, "0"), (12.0, "12"), (0.25, "0.2500"), (3.456, "3.46"), (1.5e-7, "1.5e-7"), (f64::MAX, "∞")] {
+        for (x, text) in
+            [(0.0, "0"), (12.0, "12"), (0.25, "0.2500"), (3.456, "3.46"), (1.5e-7, "1.5e-7"), (f64::MAX, "∞")]
+        {
             assert_eq!(short(x), text);
         }
     }

@@ -41,7 +41,8 @@ fn failures(page: &mut String, report: &Report) {
         *page += "<h2 class=\"bad\">What failed</h2>\n";
         rows(page, &failed);
     }
-    let missing: Vec<&Check> = report.checks.iter().filter(|check| matches!(check.outcome, Outcome::NotRun(_))).collect();
+    let missing: Vec<&Check> =
+        report.checks.iter().filter(|check| matches!(check.outcome, Outcome::NotRun(_))).collect();
     if !missing.is_empty() {
         *page += "<h2 class=\"none\">What did not run</h2>\n";
         rows(page, &missing);
@@ -60,7 +61,10 @@ fn overview(page: &mut String, report: &Report) {
             "<tr><td><a href=\"#{0}\">{0}</a></td><td class=\"number\" data-name=\"rows\">{1}</td><td>{2}</td>\
              <td class=\"number\" data-name=\"measured\">{measured}</td><td class=\"number\" data-name=\"limit\">{limit}</td>\
              <td class=\"number\" data-name=\"time\">{seconds:.1} s</td><td>{3}</td></tr>",
-            escape(name), group.len(), worst.map_or_else(String::new, bar), mark(verdict(&group)),
+            escape(name),
+            group.len(),
+            worst.map_or_else(String::new, bar),
+            mark(verdict(&group)),
         );
     }
     *page += "</tbody></table>\n<p class=\"soft\">Bars are logarithmic, from a millionth of the limit to ten times it; the \
@@ -77,11 +81,15 @@ fn pictures(page: &mut String, exhibits: &[Exhibit]) {
          noise without structure is right.</p>\n<div class=\"pictures\">"
     );
     for exhibit in exhibits {
-        let image = |bytes: &[u8], what: &str| format!("<img alt=\"{what}\" src=\"data:image/png;base64,{}\">", base64(bytes));
+        let image =
+            |bytes: &[u8], what: &str| format!("<img alt=\"{what}\" src=\"data:image/png;base64,{}\">", base64(bytes));
         let _ = writeln!(
             page,
             "<figure><div>{}{}</div><figcaption>{}<br>{}</figcaption></figure>",
-            image(&exhibit.rendered, "as rendered"), image(&exhibit.deviation, "deviation"), escape(exhibit.name), escape(&exhibit.answer),
+            image(&exhibit.rendered, "as rendered"),
+            image(&exhibit.deviation, "deviation"),
+            escape(exhibit.name),
+            escape(&exhibit.answer),
         );
     }
     *page += "</div>\n";
@@ -93,7 +101,10 @@ fn instrument(page: &mut String, report: &Report, name: &str, group: &[&Check]) 
     let _ = writeln!(
         page,
         "<details id=\"{0}\"{open}><summary><h3>{0}</h3> {1} <span class=\"soft\">{2} rows. {3}</span></summary>",
-        escape(name), mark(verdict(group)), group.len(), escape(proves),
+        escape(name),
+        mark(verdict(group)),
+        group.len(),
+        escape(proves),
     );
     rows(page, group);
     *page += "</details>\n";
@@ -107,13 +118,25 @@ fn rows(page: &mut String, checks: &[&Check]) {
             outcome => {
                 let numbers = format!(
                     "<td>{}</td><td class=\"number\" data-name=\"measured\">{}</td><td>{} {}</td>",
-                    bar(check), short(check.measured), escape(&check.meaning), short(check.limit),
+                    bar(check),
+                    short(check.measured),
+                    escape(&check.meaning),
+                    short(check.limit),
                 );
                 (numbers, mark(if *outcome == Outcome::Passed { "PASS" } else { "FAIL" }))
             }
         };
-        let detail = if check.detail.is_empty() { String::new() } else { format!("<div class=\"detail\">{}</div>", escape(&check.detail)) };
-        let _ = writeln!(page, "<tr><td>{}: {}{detail}</td>{measures}<td>{result}</td></tr>", escape(&check.instrument), escape(&check.subject));
+        let detail = if check.detail.is_empty() {
+            String::new()
+        } else {
+            format!("<div class=\"detail\">{}</div>", escape(&check.detail))
+        };
+        let _ = writeln!(
+            page,
+            "<tr><td>{}: {}{detail}</td>{measures}<td>{result}</td></tr>",
+            escape(&check.instrument),
+            escape(&check.subject)
+        );
     }
     *page += "</tbody></table>\n";
 }
@@ -155,7 +178,8 @@ fn bar(check: &Check) -> String {
         "<svg class=\"bar\" viewBox=\"0 0 100 8\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"{} of the limit\">\
          <rect class=\"track\" y=\"3\" width=\"100\" height=\"2\"/><rect class=\"{class}\" y=\"1\" width=\"{width:.1}\" height=\"6\"/>\
          <rect class=\"limit\" x=\"{:.1}\" width=\"1\" height=\"8\"/></svg>",
-        short(severity), place(1.0),
+        short(severity),
+        place(1.0),
     )
 }
 

@@ -65,7 +65,8 @@ impl Report {
 
     /// "412 passed, 0 failed, 1 not run (census: obvhs on …)".
     pub(super) fn summary(&self) -> String {
-        let missing: Vec<&str> = self.checks.iter().filter(|c| matches!(c.outcome, Outcome::NotRun(_))).map(|c| &*c.subject).collect();
+        let missing: Vec<&str> =
+            self.checks.iter().filter(|c| matches!(c.outcome, Outcome::NotRun(_))).map(|c| &*c.subject).collect();
         let (shown, more) = missing.split_at(missing.len().min(4));
         let names = match (shown.is_empty(), more.len()) {
             (true, _) => String::new(),

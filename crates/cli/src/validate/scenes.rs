@@ -218,12 +218,7 @@ fn hashes(
     Ok(())
 }
 
-fn exhibit(
-    furnace: &Furnace,
-    scene: &gonio_tracer::scene::Scene,
-    picture: &Picture,
-    out: &Path,
-) -> Result<Exhibit> {
+fn exhibit(furnace: &Furnace, scene: &gonio_tracer::scene::Scene, picture: &Picture, out: &Path) -> Result<Exhibit> {
     let expected = furnace.answer(scene);
     let mut deviation = picture.clone();
     for rgb in &mut deviation.rgb {

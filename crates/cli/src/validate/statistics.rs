@@ -42,8 +42,10 @@ pub(super) fn worst_block(picture: &Picture, expected: [f64; 3], slack: f64) -> 
             let p = student_p((mean - expected).abs() - slack * expected, error, n - 1.0);
             if p < worst.p || worst.place.is_empty() {
                 let [x0, x1, y0, y1] = area;
-                let place = if area == whole { "whole picture".to_owned() } else { format!("pixels {x0}..{x1} x {y0}..{y1}") };
-                worst = Worst { p, place: format!("{place}, {name}: {mean:.6} ± {error:.1e}, should be {expected:.6}") };
+                let place =
+                    if area == whole { "whole picture".to_owned() } else { format!("pixels {x0}..{x1} x {y0}..{y1}") };
+                worst =
+                    Worst { p, place: format!("{place}, {name}: {mean:.6} ± {error:.1e}, should be {expected:.6}") };
             }
         }
     }
@@ -52,7 +54,8 @@ pub(super) fn worst_block(picture: &Picture, expected: [f64; 3], slack: f64) -> 
 
 fn mean_and_error(picture: &Picture, [x0, x1, y0, y1]: [u32; 4], channel: usize) -> [f64; 3] {
     let rows = (y0..y1).map(|y| (y * picture.width) as usize);
-    let pixels = rows.flat_map(|row| &picture.rgb[row + x0 as usize..row + x1 as usize]).map(|rgb| f64::from(rgb[channel]));
+    let pixels =
+        rows.flat_map(|row| &picture.rgb[row + x0 as usize..row + x1 as usize]).map(|rgb| f64::from(rgb[channel]));
     let n = f64::from((x1 - x0) * (y1 - y0));
     let mean = pixels.clone().sum::<f64>() / n;
     let variance = pixels.map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0).max(1.0);

@@ -15,7 +15,14 @@ pub(super) fn text(report: &Report) -> String {
     let width = groups.iter().map(|(name, _)| name.len()).max().unwrap_or(0).max("instrument".len());
     let mut out = format!(
         "gonio {} validate, {} effort, seed {}\n\n{:width$}  rows  {:>9}  {:<9}  {:MEANING$}  {:>7}  result\n",
-        report.version, report.effort_name(), report.seed, "instrument", "worst", "limit", "where worst is measured as", "seconds",
+        report.version,
+        report.effort_name(),
+        report.seed,
+        "instrument",
+        "worst",
+        "limit",
+        "where worst is measured as",
+        "seconds",
     );
     for (name, group) in &groups {
         let seconds: f64 = group.iter().map(|check| check.seconds).sum();
@@ -36,7 +43,10 @@ pub(super) fn text(report: &Report) -> String {
     failed.sort_by(|a, b| severity(b).total_cmp(&severity(a)));
     for check in failed.iter().take(SHOWN) {
         let (measured, limit) = (short(check.measured), short(check.limit));
-        out += &format!("FAIL  {}: {}\n      {measured} against {} {limit}\n", check.instrument, check.subject, check.meaning);
+        out += &format!(
+            "FAIL  {}: {}\n      {measured} against {} {limit}\n",
+            check.instrument, check.subject, check.meaning
+        );
         if !check.detail.is_empty() {
             out += &format!("      {}\n", check.detail);
         }

@@ -49,13 +49,15 @@ pub(super) fn compare(
             accel.occluded(kind, &rays, filter, &mut blocked);
             blocked
         };
-        let (plain, filtered) = ([oracle, accel].map(|a| blocked(a, None)), [oracle, accel].map(|a| blocked(a, Some(&HalfOpen))));
+        let (plain, filtered) =
+            ([oracle, accel].map(|a| blocked(a, None)), [oracle, accel].map(|a| blocked(a, Some(&HalfOpen))));
         for (i, ray) in rays.iter().enumerate() {
             for lane in 0..F32x8::LANES {
                 let (a, b) = (expected[i].lane(lane), got[i].lane(lane));
                 found.rays += u64::from(ray.mask.lane(lane));
                 found.hits += u64::from(a.is_some());
-                let [shadow, through] = [&plain, &filtered].map(|masks| masks[0][i].lane(lane) == masks[1][i].lane(lane));
+                let [shadow, through] =
+                    [&plain, &filtered].map(|masks| masks[0][i].lane(lane) == masks[1][i].lane(lane));
                 let what = if !same(a.as_ref(), b.as_ref()) {
                     "different hits"
                 } else if !shadow {
@@ -73,7 +75,11 @@ pub(super) fn compare(
                     let number = (first + i as u64) * 8 + lane as u64;
                     format!(
                         "ray {number}: {what}: {} has {}, {} has {}; {}",
-                        oracle.name(), words(a.as_ref()), accel.name(), words(b.as_ref()), describe(ray, lane),
+                        oracle.name(),
+                        words(a.as_ref()),
+                        accel.name(),
+                        words(b.as_ref()),
+                        describe(ray, lane),
                     )
                 });
             }
@@ -94,7 +100,9 @@ pub(super) fn leaks(accel: &dyn Accel, specimen: &Specimen, count: u64, seed: u6
             rays += 1;
             if hits[0].lane(lane).is_none() {
                 leaks += 1;
-                first.get_or_insert_with(|| format!("ray {} leaves: {}", number * 8 + lane as u64, describe(&ray, lane)));
+                first.get_or_insert_with(|| {
+                    format!("ray {} leaves: {}", number * 8 + lane as u64, describe(&ray, lane))
+                });
             }
         }
     }
@@ -103,7 +111,8 @@ pub(super) fn leaks(accel: &dyn Accel, specimen: &Specimen, count: u64, seed: u6
 
 /// Equal bits; −0 is not 0 here.
 fn same(a: Option<&Hit>, b: Option<&Hit>) -> bool {
-    let bits = |hit: &Hit| [hit.t.to_bits(), hit.bary[0].to_bits(), hit.bary[1].to_bits(), hit.prim, hit.mesh, hit.instance];
+    let bits =
+        |hit: &Hit| [hit.t.to_bits(), hit.bary[0].to_bits(), hit.bary[1].to_bits(), hit.prim, hit.mesh, hit.instance];
     a.map(bits) == b.map(bits)
 }
 

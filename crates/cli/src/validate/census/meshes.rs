@@ -25,7 +25,9 @@ pub(super) fn specimens() -> Vec<Specimen> {
         ("soup", false, single(soup())),
         ("instances", false, instances()),
     ];
-    all.into_iter().filter_map(|(name, closed, (meshes, instances))| Specimen::new(name, closed, meshes, instances)).collect()
+    all.into_iter()
+        .filter_map(|(name, closed, (meshes, instances))| Specimen::new(name, closed, meshes, instances))
+        .collect()
 }
 
 impl Specimen {
@@ -106,12 +108,13 @@ fn soup() -> Mesh {
         let needle = if i % 5 == 0 { 1e-4 } else { 1.0 };
         let centre = [1, 2, 3].map(|d| 2.0 * u(d) - 1.0);
         let [e, f] = [[4, 5, 6], [7, 8, 9]].map(|d| d.map(|d| size * (2.0 * u(d) - 1.0)));
-        let corner = |s: f64, t: f64| std::array::from_fn(|axis| (centre[axis] + s * e[axis] + t * needle * f[axis]) as f32);
+        let corner =
+            |s: f64, t: f64| std::array::from_fn(|axis| (centre[axis] + s * e[axis] + t * needle * f[axis]) as f32);
         mesh.positions.extend([corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)]);
         let triangle = [first, first + 1, first + 2];
         mesh.triangles.push(triangle);
         match i % 10 {
-            3 => mesh.triangles.push(triangle),                       // a tie in everything
+            3 => mesh.triangles.push(triangle),                      // a tie in everything
             7 => mesh.triangles.push([first, first + 1, first + 1]), // no area
             _ => {}
         }

@@ -29,7 +29,14 @@ pub(super) enum Family {
 
 impl Family {
     pub(super) const ALL: [Self; 8] = [
-        Self::Camera, Self::Random, Self::AxisParallel, Self::Edge, Self::Vertex, Self::Grazing, Self::Secondary, Self::Bounded,
+        Self::Camera,
+        Self::Random,
+        Self::AxisParallel,
+        Self::Edge,
+        Self::Vertex,
+        Self::Grazing,
+        Self::Secondary,
+        Self::Bounded,
     ];
 
     /// What a renderer would say of them.

@@ -139,7 +139,9 @@ impl Furnace {
         let material = &scene.materials[0];
         let mut albedo = [0.0; 3];
         for lobe in &material.lobes {
-            if let Model::Diffuse { base_color: Color::Constant(c) } | Model::Mirror { reflectance: Color::Constant(c) } = lobe.model {
+            if let Model::Diffuse { base_color: Color::Constant(c) }
+            | Model::Mirror { reflectance: Color::Constant(c) } = lobe.model
+            {
                 for (sum, x) in albedo.iter_mut().zip(<[f32; 3]>::from(c)) {
                     *sum += f64::from(lobe.weight) * f64::from(x);
                 }
