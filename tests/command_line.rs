@@ -56,7 +56,8 @@ fn folder() -> TempDir {
 
 /// The names in a folder.
 fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<_> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    let mut names: Vec<_> =
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
 }
@@ -120,7 +121,10 @@ fn errors_are_exit_code_1_and_point_to_file_and_line() {
         ("bsdf albedo nothing.toml --cos 1", "error: nothing.toml: cannot be read"),
         ("bsdf albedo typo.toml --cos 1", "error: typo.toml:3: "),
         ("bsdf eval white.toml --directions nothing.csv", "error: nothing.csv: cannot be read"),
-        ("bsdf eval white.toml --directions short.csv -o a.csv", "error: short.csv:2: a row has 6 numbers, this one has 5"),
+        (
+            "bsdf eval white.toml --directions short.csv -o a.csv",
+            "error: short.csv:2: a row has 6 numbers, this one has 5",
+        ),
         ("bsdf eval white.toml --directions word.csv -o a.csv", "error: word.csv:3: \"zero\" is not a number"),
         ("bsdf eval white.toml --directions header.csv -o a.csv", "error: header.csv:1: "),
         ("validate --quick --only leaks --out white.toml", "error: white.toml: cannot be made"),
@@ -137,7 +141,9 @@ fn an_output_that_cannot_be_written_is_found_before_the_work() {
     let before = names(folder.path());
     // A scene that would render for hours: if it were rendered first, this test would not end.
     let render = format!("render {} --spp 1000000", scene("cornell-box.toml"));
-    for outputs in ["-o no/folder/a.exr", "-o taken.exr", "-o white.toml/a.png", "-o a.exr --stats no/folder/stats.json"] {
+    for outputs in
+        ["-o no/folder/a.exr", "-o taken.exr", "-o white.toml/a.png", "-o a.exr --stats no/folder/stats.json"]
+    {
         gonio(folder.path(), &format!("{render} {outputs}")).fails(1, "cannot be written");
     }
     gonio(folder.path(), "bsdf sample white.toml --wo 0,0,1 -n 4 -o no/folder/a.csv").fails(1, "cannot be written");
@@ -148,7 +154,10 @@ fn an_output_that_cannot_be_written_is_found_before_the_work() {
 fn a_render_writes_pictures_and_statistics_in_silence() {
     let folder = folder();
     let render = format!("render {} --size 8x8 --spp 1", scene("cornell-box.toml"));
-    let run = gonio(folder.path(), &format!("{render} -o a.exr -o a.png --stats stats.json --backend brute --threads 2 --seed 7"));
+    let run = gonio(
+        folder.path(),
+        &format!("{render} -o a.exr -o a.png --stats stats.json --backend brute --threads 2 --seed 7"),
+    );
     assert_eq!(run.err, "");
     assert_eq!(run.succeeds(), "");
     assert_eq!(&fs::read(folder.path().join("a.exr")).unwrap()[..4], [0x76, 0x2f, 0x31, 0x01]);
@@ -157,7 +166,15 @@ fn a_render_writes_pictures_and_statistics_in_silence() {
     for name in ["load_seconds", "build_seconds", "render_seconds", "msamples_per_second", "lanes_full"] {
         assert!(stats[name].as_f64().unwrap() >= 0.0, "{name}");
     }
-    for (name, value) in [("samples", 64), ("spp", 1), ("width", 8), ("height", 8), ("max_depth", 8), ("seed", 7), ("dropped_samples", 0)] {
+    for (name, value) in [
+        ("samples", 64),
+        ("spp", 1),
+        ("width", 8),
+        ("height", 8),
+        ("max_depth", 8),
+        ("seed", 7),
+        ("dropped_samples", 0),
+    ] {
         assert_eq!(stats[name].as_u64(), Some(value), "{name}");
     }
     for name in ["closest_rays", "shadow_rays", "threads"] {
@@ -190,7 +207,8 @@ fn threads_and_backends_do_not_change_the_picture_but_seeds_do() {
 #[test]
 fn an_obj_file_alone_renders_with_warnings_and_to_standard_output() {
     let folder = folder();
-    let arguments = format!("render {} --size 8x8 --spp 1 --no-russian-roulette --crop 2,2,6,4", scene("furnace-object.obj"));
+    let arguments =
+        format!("render {} --size 8x8 --spp 1 --no-russian-roulette --crop 2,2,6,4", scene("furnace-object.obj"));
     let run = gonio(folder.path(), &format!("{arguments} -o a.exr --stats -"));
     assert!(run.err.starts_with("warning: ") && run.err.contains("material \"object\" is not defined"), "{}", run.err);
     let stats: Value = serde_json::from_str(&run.succeeds()).unwrap();
@@ -203,13 +221,21 @@ fn an_obj_file_alone_renders_with_warnings_and_to_standard_output() {
 fn what_is_sampled_evaluates_to_the_same_digits() {
     let folder = folder();
     for precision in ["f32", "f64", "lanes"] {
-        let sampled = gonio(folder.path(), &format!("bsdf sample metal.toml --wo 0.6,0,0.8 -n 1000 --seed 3 --precision {precision}")).succeeds();
+        let sampled = gonio(
+            folder.path(),
+            &format!("bsdf sample metal.toml --wo 0.6,0,0.8 -n 1000 --seed 3 --precision {precision}"),
+        )
+        .succeeds();
         assert!(sampled.starts_with("wi_x,wi_y,wi_z,f_cos_r,f_cos_g,f_cos_b,pdf,weight_r,weight_g,weight_b,event\n"));
         let sampled: Vec<_> = rows(&sampled).into_iter().filter(|row| row[10] != "failed").collect();
         assert!(sampled.len() > 500);
         let table: String = sampled.iter().map(|row| format!("0.6,0,0.8,{}\n", row[..3].join(","))).collect();
         fs::write(folder.path().join("pairs.csv"), table).unwrap();
-        gonio(folder.path(), &format!("bsdf eval metal.toml --directions pairs.csv -o out.csv --precision {precision}")).succeeds();
+        gonio(
+            folder.path(),
+            &format!("bsdf eval metal.toml --directions pairs.csv -o out.csv --precision {precision}"),
+        )
+        .succeeds();
         let out = fs::read_to_string(folder.path().join("out.csv")).unwrap();
         assert_eq!(out.lines().next(), Some("f_cos_r,f_cos_g,f_cos_b,pdf"));
         for (sampled, evaluated) in sampled.iter().zip(rows(&out)) {
@@ -223,7 +249,8 @@ fn eight_lanes_print_the_same_bytes_as_the_scalar() {
     let folder = folder();
     for material in ["white.toml", "metal.toml", "mirror.toml"] {
         let sample = |precision| {
-            gonio(folder.path(), &format!("bsdf sample {material} --wo -0.48,0.36,0.8 -n 1003 --precision {precision}")).succeeds()
+            gonio(folder.path(), &format!("bsdf sample {material} --wo -0.48,0.36,0.8 -n 1003 --precision {precision}"))
+                .succeeds()
         };
         assert_eq!(sample("f32"), sample("lanes"), "{material}");
     }
@@ -247,7 +274,8 @@ fn directions_outside_of_the_domain_are_worth_exactly_nothing() {
 #[test]
 fn a_longer_table_of_samples_begins_with_the_shorter_one() {
     let folder = folder();
-    let sample = |n, seed| gonio(folder.path(), &format!("bsdf sample metal.toml --wo 0,0,1 -n {n} --seed {seed}")).succeeds();
+    let sample =
+        |n, seed| gonio(folder.path(), &format!("bsdf sample metal.toml --wo 0,0,1 -n {n} --seed {seed}")).succeeds();
     assert!(sample("5000", 1).starts_with(&sample("13", 1)));
     assert_ne!(sample("13", 1), sample("13", 2));
     let mirror = gonio(folder.path(), "bsdf sample mirror.toml --wo 0.6,0,0.8 -n 1").succeeds();
@@ -271,7 +299,9 @@ fn albedo_is_json_with_standard_errors() {
             assert_eq!(row["sum"]["mean"][channel], row["R"]["mean"][channel]);
         }
     }
-    let pretty: Value = serde_json::from_str(&gonio(folder.path(), "bsdf albedo white.toml --cos 0.1,1 --samples 1e4").succeeds()).unwrap();
+    let pretty: Value =
+        serde_json::from_str(&gonio(folder.path(), "bsdf albedo white.toml --cos 0.1,1 --samples 1e4").succeeds())
+            .unwrap();
     assert_eq!(pretty, result);
 }
 
@@ -320,7 +350,10 @@ fn a_validation_writes_its_report_and_a_failure_is_exit_code_3() {
     assert_eq!(run.code, 3, "{}", run.err);
     let report: Value = serde_json::from_str(&run.out).unwrap();
     assert_eq!(report["failed"].as_u64(), Some(1));
-    assert_eq!(report, serde_json::from_slice::<Value>(&fs::read(folder.path().join("report/report.json")).unwrap()).unwrap());
+    assert_eq!(
+        report,
+        serde_json::from_slice::<Value>(&fs::read(folder.path().join("report/report.json")).unwrap()).unwrap()
+    );
     let run = gonio(folder.path(), "validate --quick --only embree --out report");
     assert!(run.out.contains("0 passed, 0 failed, 1 not run (embree)"), "{}", run.out);
     let run = gonio(folder.path(), "validate --quick --only leaks --out report --plant-failure");
@@ -333,7 +366,8 @@ fn an_old_processor_gets_a_sentence_instead_of_an_illegal_instruction() {
     if !cfg!(target_feature = "avx2") {
         return;
     }
-    let Ok(output) = std::process::Command::new("qemu-x86_64").args(["-cpu", "Nehalem", PROGRAM, "--version"]).output() else {
+    let Ok(output) = std::process::Command::new("qemu-x86_64").args(["-cpu", "Nehalem", PROGRAM, "--version"]).output()
+    else {
         println!("not run: qemu-x86_64 (package qemu-user) is not installed");
         return;
     };

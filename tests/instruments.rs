@@ -6,7 +6,7 @@ use gonio_lab::{Certificate, Check, Effort, Options, Outcome, certify, instrumen
 
 fn checks(only: &str, seed: u64) -> Vec<Check> {
     let mut checks = Vec::new();
-    let options = Options { effort: Effort::Quick, seed, only: Some(only.to_owned()) };
+    let options = Options { seed, only: Some(only.to_owned()), ..Options::new(Effort::Quick) };
     validate_kernel(&options, &mut |check| checks.push(check));
     checks
 }

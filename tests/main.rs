@@ -1,6 +1,8 @@
 //! The tests that cross crates: one binary, one module per theme.
 
 mod backends; // Every backend finds the hit that brute finds, and nothing leaks.
+mod command_line; // What a user types: exit codes, error sentences, files.
+mod instruments; // Each instrument passes the kernel and catches its planted faults.
 mod mitsuba; // The Cornell box is the picture that Mitsuba 3 makes.
 mod pictures; // Threads, crops, plans, backends, scale and place never change a picture.
 mod scene_files; // Scene files, good and bad: what loads, what it becomes, and the very words of each refusal.

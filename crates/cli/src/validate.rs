@@ -28,8 +28,6 @@ use std::time::{Duration, Instant};
 /// What all tests of the furnace scenes together may fail by chance, per run, and likewise all tests of the kernel:
 /// half of 0.01 each.
 const SIGNIFICANCE: f64 = 0.005;
-/// What `gonio-lab` grants all tests of the kernel.
-const LAB_SIGNIFICANCE: f64 = 0.01;
 
 /// Run every physical check and write a report.
 ///
@@ -91,7 +89,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         (_, true) => Effort::Full,
         _ => Effort::Standard,
     };
-    let options = Options { seed: args.seed, only: args.only.clone(), ..Options::new(effort) };
+    let options =
+        Options { seed: args.seed, only: args.only.clone(), significance: SIGNIFICANCE, ..Options::new(effort) };
     // Fail before the work, not after it.
     std::fs::create_dir_all(&args.out).with_context(|| format!("{}: cannot be made", args.out.display()))?;
     crate::output::probe(&args.out.join("report.json"))?;
@@ -105,7 +104,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
         checks.push(check);
     };
-    validate_kernel(&options, &mut |check| sink(at_half_the_budget(check)));
+    validate_kernel(&options, &mut sink);
     let pictures = scenes::run(&options, &args.out, &mut sink)?;
     census::run(&options, &mut sink);
     if args.plant_failure {
@@ -130,17 +129,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     write_text(&Target::Stdout, &printed)?;
     Ok(ExitCode::from(if report.failed == 0 { 0 } else { 3 }))
-}
-
-/// Judges a p-value of the lab again, at the part of the budget that the kernel has here. With Šidák's levels the part of
-/// n tests is a power: (1 − level)ⁿ = 1 − significance.
-fn at_half_the_budget(mut check: Check) -> Check {
-    if check.meaning == "p ≥" && !matches!(check.outcome, Outcome::NotRun(_)) {
-        let share = (-SIGNIFICANCE).ln_1p() / (-LAB_SIGNIFICANCE).ln_1p();
-        check.limit = -(share * (-check.limit).ln_1p()).exp_m1();
-        check.outcome = if check.measured >= check.limit { Outcome::Passed } else { Outcome::Failed };
-    }
-    check
 }
 
 fn planted_failure() -> Check {

@@ -188,9 +188,9 @@ mod tests {
         assert!(!first.event.discrete && first.event.lobe == 0 && closure.discrete(&first.event).pdf == 0.0);
         assert!(second.event.discrete && second.event.lobe == 1);
         assert_eq!(second.wi, Vec3::new(-0.6, 0.0, 0.8));
-        // Chosen half of the time, worth 0.5 · 0.5 whenever it is: weight times probability is 0.5 · 0.5 · 0.5.
+        // Half of 0.5 is reflected like this, and half of the samples carry it: each is worth 0.25/0.5.
         let worth = closure.discrete(&second.event);
-        assert!(close(worth.pdf.into(), 0.5, 1e-6) && close(worth.f_cos.r.into(), 0.125, 1e-6));
+        assert!(close(worth.pdf.into(), 0.5, 1e-6) && close(worth.f_cos.r.into(), 0.25, 1e-6));
     }
 
     #[test]

@@ -43,7 +43,7 @@ pub struct Check {
     pub meaning: String,
     /// Where the worst case lies, or why the check could not run: one line, may be empty.
     pub detail: String,
-    /// Wall time of the check [s].
+    /// Wall time of the check \[s\].
     pub seconds: f64,
 }
 

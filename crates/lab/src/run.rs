@@ -8,7 +8,7 @@ use crate::check::{Check, Effort};
 use crate::faults;
 use crate::finding::{Finding, Run};
 use crate::random::seed_for;
-use crate::statistics::sidak;
+use crate::statistics::{FAMILY_SIGNIFICANCE, sidak};
 use crate::subject::{Subject, View};
 use crate::zoo::{METAL, rows, species};
 use crate::{
@@ -28,12 +28,14 @@ pub struct Options {
     pub seed: u64,
     /// Only checks whose instrument has this name, or whose subject contains this text.
     pub only: Option<String>,
+    /// The probability with which all statistical tests of the run together may fail a correct kernel.
+    pub significance: f64,
 }
 
 impl Options {
     /// Everything, at the given effort, with the usual seed.
     pub fn new(effort: Effort) -> Self {
-        Self { effort, seed: 1, only: None }
+        Self { effort, seed: 1, only: None, significance: FAMILY_SIGNIFICANCE }
     }
 }
 
@@ -188,7 +190,7 @@ fn kernel_tasks() -> Vec<Task<'static>> {
 /// Runs the wanted tasks on all threads and hands on the checks in order.
 pub(crate) fn execute(tasks: Vec<Task>, options: &Options, sink: &mut dyn FnMut(Check)) {
     let tasks: Vec<Task> = tasks.into_iter().filter(|task| task.wanted(options.only.as_deref())).collect();
-    let level = sidak(tasks.iter().map(|task| task.tests).sum());
+    let level = sidak(options.significance, tasks.iter().map(|task| task.tests).sum());
     let threads = std::thread::available_parallelism().map_or(1, usize::from).min(tasks.len().max(1));
     let next = AtomicUsize::new(0);
     std::thread::scope(|scope| {

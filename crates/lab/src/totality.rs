@@ -72,7 +72,7 @@ pub(crate) fn measure_inside(parameters: &[Parameter], build: Build<F32x8>, run:
     let mut finding = Finding::at_most(0.0, "unsound results without a guard, inside the domain ≤");
     let mut unsound = 0_usize;
     let mut first = String::new();
-    let rounds = run.by_effort(25_000, 250_000, 2_500_000);
+    let rounds = run.by_effort(25_000, 250_000, 1_250_000);
     for _ in 0..rounds {
         let mut p = vec![[0.0_f32; 8]; parameters.len()];
         let (mut wo, mut wi) = ([Vec3::unit_z(); 8], [Vec3::unit_z(); 8]);
@@ -154,7 +154,7 @@ pub(crate) fn measure_special(parameters: &[Parameter], build: Build<f32>, run: 
     let mut first = String::new();
     let count = parameters.len();
     let places = count + 6 + 3;
-    let rounds = run.by_effort(50_000, 500_000, 5_000_000);
+    let rounds = run.by_effort(50_000, 500_000, 2_500_000);
     for round in 0..rounds {
         let (wo, wi) = pair(&mut random);
         let mut x: Vec<f32> = parameters.iter().map(|p| parameter(p, &mut random)).collect();
@@ -237,7 +237,7 @@ pub(crate) fn measure_probe(view: View, run: &Run) -> Finding {
     let mut finding = Finding::at_most(0.0, "unsound results inside the domain, or panics outside ≤");
     let mut broken = 0_usize;
     let mut first = String::new();
-    for round in 0..run.by_effort(50_000, 500_000, 5_000_000) {
+    for round in 0..run.by_effort(50_000, 500_000, 2_500_000) {
         let (wo, wi) = pair(&mut random);
         let u = random.sampler_input(view.probe.single());
         let (mut o, mut i): ([f32; 3], [f32; 3]) = (wo.into(), wi.into());
