@@ -74,7 +74,7 @@ fn splat_corners(triangle: &WorldTriangle) -> [Vec3<F32x8>; 3] {
 }
 
 #[inline(always)]
-pub(crate) fn record(best: &mut Hit8, mask: Mask8, c: &Crossing, id: TriangleId) {
+fn record(best: &mut Hit8, mask: Mask8, c: &Crossing, id: TriangleId) {
     best.t = F32x8::select(mask, c.t, best.t);
     let bary = c.bary();
     best.bary = [F32x8::select(mask, bary[0], best.bary[0]), F32x8::select(mask, bary[1], best.bary[1])];

@@ -127,10 +127,16 @@ impl Crossing {
     /// Barycentric weights of the second and third vertex; the first has 1 − b1 − b2.
     #[inline(always)]
     pub fn bary(&self) -> [F32x8; 2] {
-        let [e0, e1, e2] = self.edges;
-        let scale = (e0 + e1 + e2).recip();
-        [e1 * scale, e2 * scale]
+        barycentric(&self.edges)
     }
+}
+
+/// Barycentric weights of the second and third vertex from the edge functions.
+#[inline(always)]
+pub fn barycentric(edges: &[F32x8; 3]) -> [F32x8; 2] {
+    let [e0, e1, e2] = *edges;
+    let scale = (e0 + e1 + e2).recip();
+    [e1 * scale, e2 * scale]
 }
 
 /// Tests lane by lane whether the ray meets the triangle with t_min ≤ t ≤ t_max.
@@ -144,9 +150,17 @@ pub fn intersect(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: F32x8, t_max: F
 /// The three edge functions of projected triangles.
 #[derive(Clone, Copy, Debug)]
 pub struct Edges {
-    e: [F32x8; 3],
+    /// Each opposite its corner.
+    pub e: [F32x8; 3],
     least: F32x8,
     most: F32x8,
+}
+
+impl From<[F32x8; 3]> for Edges {
+    #[inline(always)]
+    fn from(e: [F32x8; 3]) -> Self {
+        Self { e, least: e[0].min(e[1]).min(e[2]), most: e[0].max(e[1]).max(e[2]) }
+    }
 }
 
 impl Edges {
@@ -154,14 +168,19 @@ impl Edges {
     #[inline(always)]
     pub fn new(p0: [F32x8; 2], p1: [F32x8; 2], p2: [F32x8; 2]) -> Self {
         let edge = |p: [F32x8; 2], q: [F32x8; 2]| p[0] * q[1] - p[1] * q[0];
-        let e = [edge(p1, p2), edge(p2, p0), edge(p0, p1)];
-        Self { e, least: e[0].min(e[1]).min(e[2]), most: e[0].max(e[1]).max(e[2]) }
+        Self::from([edge(p1, p2), edge(p2, p0), edge(p0, p1)])
+    }
+
+    /// Where no two edge functions have different signs.
+    #[inline(always)]
+    pub fn inside(&self) -> Mask8 {
+        self.least.ge(F32x8::ZERO) | self.most.le(F32x8::ZERO)
     }
 
     /// Completes the test; the plane is asked for only if some lane is inside.
     #[inline(always)]
     pub fn cross(&self, beam: &Beam, plane: impl FnOnce() -> Plane<F32x8>, t_min: F32x8, t_max: F32x8) -> Crossing {
-        let inside = self.least.ge(F32x8::ZERO) | self.most.le(F32x8::ZERO);
+        let inside = self.inside();
         let mut crossing = Crossing { mask: inside, t: F32x8::ZERO, edges: self.e };
         if inside.to_bits() != 0 {
             let [e0, e1, e2] = self.e;

@@ -5,11 +5,11 @@
 //! distance test needs of a triangle is computed once for all. The formulas are those of [`crate::triangle`], so the
 //! results are those of the tree and of `Brute`.
 
-use crate::brute::{bounds, filtered, record};
+use crate::brute::{bounds, filtered};
 use crate::geometry::{Geometry, TriangleId, WorldTriangle};
-use crate::ray::{Hit8, Opacity, Ray8};
-use crate::triangle::{Beam, Edges, Plane};
-use gonio_kernel::{F32x8, Mask, Mask8, Real, Vec3};
+use crate::ray::{Hit8, NO_HIT, Opacity, Ray8};
+use crate::triangle::{Beam, Edges, Plane, barycentric};
+use gonio_kernel::{F32x8, Mask, Mask8, Real, U32x8, Vec3, each_lane};
 
 /// Up to this many triangles a list is used. A ray costs about as much as in the tree at 100 triangles.
 const MOST: usize = 64;
@@ -64,51 +64,84 @@ impl Few {
         beam
     }
 
+    /// The edge functions of every triangle, and the set of those that some ray is inside of. Without a branch per
+    /// triangle: whether eight rays that have nothing in common are all outside is a coin toss.
+    #[inline(always)]
+    fn candidates(&self, projected: &Projected, edges: &mut [[F32x8; 3]; MOST]) -> u64 {
+        let mut inside = 0;
+        for (i, (row, edges)) in self.rows.iter().zip(edges).enumerate() {
+            let [a, b, c] = row.corners.map(|v| projected[v as usize]);
+            let found = Edges::new(a, b, c);
+            *edges = found.e;
+            inside |= u64::from(found.inside().to_bits() != 0) << i;
+        }
+        inside
+    }
+
     pub(super) fn closest(&self, rays: &[Ray8], hits: &mut [Hit8]) {
-        let mut projected = [[F32x8::ZERO; 2]; 256];
+        let (mut projected, mut edges) = ([[F32x8::ZERO; 2]; 256], [[F32x8::ZERO; 3]; MOST]);
         for (ray, hit) in rays.iter().zip(hits) {
             let beam = self.project(ray, &mut projected);
-            let mut best = Hit8::miss();
+            let candidates = self.candidates(&projected, &mut edges);
+            let mut t = F32x8::splat(f32::INFINITY);
             let mut t_best = F32x8::select(ray.mask, ray.t_max, F32x8::splat(-1.0)); // a dead lane's interval is empty
-            for row in &self.rows {
-                let c = row.edges(&projected).cross(&beam, || row.plane.splat(), ray.t_min, t_best);
-                let nearer = c.mask & c.t.lt(best.t); // triangles come in order: on a tie the earlier one stays
+            let mut best_edges = [F32x8::ZERO; 3];
+            let mut best_row = U32x8::splat(NO_HIT);
+            for_each_bit(candidates, |i| {
+                let row = &self.rows[i];
+                let c = Edges::from(edges[i]).cross(&beam, || row.plane.splat(), ray.t_min, t_best);
+                let nearer = c.mask & c.t.lt(t); // triangles come in order: on a tie the earlier one stays
                 if nearer.any() {
+                    t = F32x8::select(nearer, c.t, t);
                     t_best = F32x8::select(nearer, c.t, t_best);
-                    record(&mut best, nearer, &c, row.id);
+                    for (best, e) in best_edges.iter_mut().zip(edges[i]) {
+                        *best = F32x8::select(nearer, e, *best);
+                    }
+                    best_row = U32x8::select(nearer, U32x8::splat(i as u32), best_row);
                 }
-            }
-            *hit = best;
+            });
+            let found = !best_row.same(U32x8::splat(NO_HIT));
+            let id = each_lane(|l| self.rows.get(best_row.lane(l) as usize).map_or(NOTHING, |row| row.id));
+            *hit = Hit8 {
+                t,
+                bary: barycentric(&best_edges).map(|b| b.or_zero(found)),
+                prim: U32x8::from_fn(|l| id[l].prim),
+                mesh: U32x8::from_fn(|l| id[l].mesh),
+                instance: U32x8::from_fn(|l| id[l].instance),
+            };
         }
     }
 
     pub(super) fn occluded(&self, rays: &[Ray8], filter: Option<&dyn Opacity>, blocked: &mut [Mask8]) {
-        let mut projected = [[F32x8::ZERO; 2]; 256];
+        let (mut projected, mut edges) = ([[F32x8::ZERO; 2]; 256], [[F32x8::ZERO; 3]; MOST]);
         for ((packet, ray), blocked) in rays.iter().enumerate().zip(blocked) {
             let beam = self.project(ray, &mut projected);
-            let mut open = ray.mask;
-            for row in &self.rows {
-                let t_max = F32x8::select(open, ray.t_max, F32x8::splat(-1.0));
-                let c = row.edges(&projected).cross(&beam, || row.plane.splat(), ray.t_min, t_max);
+            let candidates = self.candidates(&projected, &mut edges);
+            let mut t_max = F32x8::select(ray.mask, ray.t_max, F32x8::splat(-1.0));
+            let mut shut = Mask8::splat(false);
+            for_each_bit(candidates, |i| {
+                let row = &self.rows[i];
+                let c = Edges::from(edges[i]).cross(&beam, || row.plane.splat(), ray.t_min, t_max);
                 let hit = match filter {
                     Some(filter) => filtered(filter, packet, c.mask, &c, row.id),
                     None => c.mask,
                 };
-                open = open & !hit;
-                if !open.any() {
-                    break;
-                }
-            }
-            *blocked = ray.mask & !open;
+                shut = shut | hit;
+                t_max = F32x8::select(hit, F32x8::splat(-1.0), t_max); // asked no more
+            });
+            *blocked = shut;
         }
     }
 }
 
-impl Row {
-    #[inline(always)]
-    fn edges(&self, projected: &Projected) -> Edges {
-        let [a, b, c] = self.corners.map(|v| projected[v as usize]);
-        Edges::new(a, b, c)
+/// The id of a miss.
+const NOTHING: TriangleId = TriangleId { prim: NO_HIT, mesh: NO_HIT, instance: NO_HIT };
+
+#[inline(always)]
+fn for_each_bit(mut bits: u64, mut f: impl FnMut(usize)) {
+    while bits != 0 {
+        f(bits.trailing_zeros() as usize % MOST);
+        bits &= bits - 1;
     }
 }
 
