@@ -13,7 +13,7 @@
 //!
 //! **Agreement.** A traversal enters a box if the ray meets it, grown by [`PAD`], no farther than [`Beam::slack`] behind the
 //! best hit so far. That loses no hit, because a hit's t is within the slack of where the ray truly is inside the triangle's
-//! box: by the error bound of h/n·d where the ray is not too nearly parallel to the plane ([`STEEP`]), and where it is, or
+//! box: by the error bound of h/n·d where the ray is not too nearly parallel to the plane (`STEEP`), and where it is, or
 //! where an edge function is zero, by limiting t to the slab interval of the triangle's own box. That interval lies within the interval of every box around
 //! it, in floating point too, because each of its steps is monotonic. So every backend finds the hit that all triangles in
 //! turn would give, to the last bit.

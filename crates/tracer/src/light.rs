@@ -11,6 +11,8 @@ use gonio_kernel::{F32x8, Real, Rgb, U32x8, Vec3, each_lane};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Emitter {
     pub(crate) corners: [Vec3<f32>; 3],
+    /// The side of the winding that emits, unit.
+    pub(crate) normal: Vec3<f32>,
     pub(crate) radiance: Rgb<f32>,
 }
 
@@ -27,6 +29,7 @@ pub(crate) struct Lights {
 /// Eight emitters side by side.
 pub(crate) struct Emitters {
     pub(crate) corners: [Vec3<F32x8>; 3],
+    pub(crate) normal: Vec3<F32x8>,
     pub(crate) radiance: Rgb<F32x8>,
 }
 
@@ -75,6 +78,11 @@ impl Lights {
         };
         Emitters {
             corners: [corner(0), corner(1), corner(2)],
+            normal: Vec3::new(
+                F32x8::from_fn(|l| emitters[l].normal.x),
+                F32x8::from_fn(|l| emitters[l].normal.y),
+                F32x8::from_fn(|l| emitters[l].normal.z),
+            ),
             radiance: Rgb::new(
                 F32x8::from_fn(|l| emitters[l].radiance.r),
                 F32x8::from_fn(|l| emitters[l].radiance.g),

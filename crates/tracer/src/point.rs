@@ -3,6 +3,7 @@
 use crate::plan::Plan;
 use crate::queue::Batch;
 use crate::world::World;
+use gonio_kernel::frame::tangents;
 use gonio_kernel::{F32x8, Frame, Mask, Mask8, Real, Vec3, each_lane};
 
 /// Error bound of a position formed from barycentrics, in units of the sum of its absolute terms: two roundings for the
@@ -73,8 +74,11 @@ impl ShadingPoints {
             )
         };
         let corners = [corner(0), corner(1), corner(2)];
-        let (e1, e2) = (corners[1] - corners[0], corners[2] - corners[0]);
-        let winding = e1.cross(e2).normalize_or(wo); // a triangle too small for its normal faces the viewer
+        let winding = Vec3::new(
+            F32x8::from_fn(|l| triangles[l].normal.x),
+            F32x8::from_fn(|l| triangles[l].normal.y),
+            F32x8::from_fn(|l| triangles[l].normal.z),
+        );
         let cos = winding.dot(wo);
         let front = cos.ge(F32x8::ZERO);
         let side = F32x8::ONE.copysign(cos);
@@ -99,7 +103,8 @@ impl ShadingPoints {
         }
 
         let mut uv = [F32x8::ZERO; 2];
-        let mut frame = Frame::from_normal(shading);
+        let (x, y) = tangents(shading); // unit already: no need to normalise again
+        let mut frame = Frame { x, y, z: shading };
         if (plan.textures || plan.tangents) && !world.uvs.is_empty() {
             let uvs = each_lane(|l| &world.uvs[index[l]]);
             let at = |c: usize, k: usize| F32x8::from_fn(|l| uvs[l][c][k]);
@@ -115,6 +120,7 @@ impl ShadingPoints {
                 // ∂p/∂u up to a positive factor: solve e₁ = Δu₁ ∂u + Δv₁ ∂v, e₂ likewise.
                 let (dv1, dv2) = (v[1] - v[0], v[2] - v[0]);
                 let det = (u[1] - u[0]) * dv2 - (u[2] - u[0]) * dv1;
+                let (e1, e2) = (corners[1] - corners[0], corners[2] - corners[0]);
                 let tangent = (e1 * dv2 - e2 * dv1) * F32x8::ONE.copysign(det);
                 let along = Frame::from_normal_tangent(shading, tangent);
                 frame = Frame {

@@ -81,7 +81,7 @@ pub struct Progress {
     pub spp: u32,
     /// Samples done.
     pub samples: u64,
-    /// Since the render began [s].
+    /// Since the render began \[s\].
     pub seconds: f64,
 }
 

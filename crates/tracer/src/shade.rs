@@ -156,7 +156,7 @@ pub(crate) fn hit(
             let asked = if kind {
                 ask_sky(ctx, &points, place, p_environment)
             } else {
-                ask_emitter(ctx, &points, origin, u.0[1], rest, place)
+                ask_emitter(ctx, origin, u.0[1], rest, place)
             };
             let value = closure.eval(points.frame.to_local(asked.wi));
             let weight = power_heuristic(asked.pdf, value.pdf) / asked.pdf;
@@ -220,17 +220,9 @@ fn ask_sky(ctx: &Context, points: &ShadingPoints, place: [F32x8; 2], probability
 
 /// A uniform point of an emitting triangle chosen by power.
 #[inline(always)]
-fn ask_emitter(
-    ctx: &Context,
-    points: &ShadingPoints,
-    origin: Vec3<F32x8>,
-    slot: U32x8,
-    toss: F32x8,
-    place: [F32x8; 2],
-) -> Asked {
+fn ask_emitter(ctx: &Context, origin: Vec3<F32x8>, slot: U32x8, toss: F32x8, place: [F32x8; 2]) -> Asked {
     let emitters = ctx.world.lights.pick(slot, toss);
-    let [c0, c1, c2] = emitters.corners;
-    let normal = (c1 - c0).cross(c2 - c0).normalize_or(points.normal);
+    let normal = emitters.normal;
     let target = SurfacePoint::new(&emitters.corners, sample_uniform_triangle(place)).off_plane(normal);
     let to = target - origin;
     let distance2 = to.length2();

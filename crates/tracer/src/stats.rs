@@ -8,7 +8,7 @@ const KEPT: usize = 10;
 /// Counts and times of a render.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderStats {
-    /// Wall time of the render alone [s].
+    /// Wall time of the render alone \[s\].
     pub render_seconds: f64,
     /// Camera samples.
     pub samples: u64,

@@ -38,6 +38,8 @@ pub struct World {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle {
     pub(crate) corners: [Vec3<f32>; 3],
+    /// Geometric normal on the front of the winding, unit; 0 if the triangle is too small to have one.
+    pub(crate) normal: Vec3<f32>,
     /// Index into [`World::materials`].
     pub(crate) material: u32,
 }
@@ -107,7 +109,7 @@ impl World {
 
         let emitters = world.triangles.iter().filter_map(|t| {
             let radiance = world.materials[t.material as usize].emission;
-            (radiance.luminance() > 0.0).then_some(Emitter { corners: t.corners, radiance })
+            (radiance.luminance() > 0.0).then(|| Emitter { corners: t.corners, normal: t.normal, radiance })
         });
         world.lights = Lights::new(emitters.collect(), scene.environment);
         world.plan.area_lights = world.triangles.iter().any(|t| world.materials[t.material as usize].emits());
@@ -149,9 +151,11 @@ impl World {
         let triangles: Vec<[u32; 3]> = mesh.triangles.iter().map(front).collect();
 
         let corners = triangles.iter().map(|t| t.map(|v| Vec3::from(positions[v as usize])));
-        self.triangles.extend(
-            corners.zip(&mesh.materials).map(|(corners, &m)| Triangle { corners, material: order[m as usize] }),
-        );
+        self.triangles.extend(corners.zip(&mesh.materials).map(|(corners, &m)| Triangle {
+            normal: unit_normal(&corners),
+            corners,
+            material: order[m as usize],
+        }));
         if self.plan.smooth_normals {
             let none = Vec3::new(0.0, 0.0, 0.0);
             let turned: Vec<Vec3<f32>> = mesh.normals.iter().flatten().map(|&n| turn(normal_matrix, n)).collect();
@@ -167,6 +171,11 @@ impl World {
 
 fn turn(normal_matrix: DMat3, n: [f32; 3]) -> Vec3<f32> {
     (normal_matrix * glam::Vec3::from(n).as_dvec3()).normalize_or_zero().as_vec3().to_array().into()
+}
+
+/// The unit normal on the front of a triangle's winding; 0 if it is too small to have one.
+fn unit_normal([a, b, c]: &[Vec3<f32>; 3]) -> Vec3<f32> {
+    (*b - *a).cross(*c - *a).normalize_or(Vec3::new(0.0, 0.0, 0.0))
 }
 
 /// The middle of everything that is placed.
