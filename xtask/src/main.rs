@@ -1,6 +1,8 @@
 //! `cargo xtask`: what takes more than one plain cargo command. It orchestrates, links none of our crates, and needs
 //! nothing but std, so that it builds in a second.
 
+#![forbid(unsafe_code)]
+
 mod cargo;
 mod ci;
 mod elf;
