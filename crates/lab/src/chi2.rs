@@ -168,8 +168,8 @@ fn test(view: View, at: &Prepared, n: u64, random: &mut Random) -> (f64, String)
     }
     let p = chi2_p(statistic, f64::from((used - 1).max(1)));
     let detail = format!(
-        "χ² = {statistic:.1} in {used} bins; worst bin has {} for {:.1}; pool has {} for {:.2}",
-        worst.1, worst.2, pool.0, pool.1
+        "χ² = {statistic:.1} in {used} bins; worst bin has {} for {:.1}; pool has {} for {:.2}; quadrature is off by {:.1e}",
+        worst.1, worst.2, pool.0, pool.1, total.error
     );
     // Two tests at one level: Bonferroni.
     ((2.0 * p.min(p_pool)).min(1.0), detail)

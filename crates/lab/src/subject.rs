@@ -7,6 +7,7 @@ use crate::quadrature::Integral;
 use crate::random::{Random, direction, seed_for};
 use crate::zoo::Row;
 use gonio_kernel::Lobe;
+use gonio_kernel::Vec3;
 use std::sync::OnceLock;
 
 /// What is claimed of a model, beyond the laws that hold for all.
@@ -119,7 +120,11 @@ impl<'a> View<'a> {
         let reference = self.reference;
         VIEWS.iter().zip(self.prepared).map(move |(&(cos, phi), slot)| {
             slot.get_or_init(|| {
-                let wo = promote(demote(direction(cos, phi)));
+                // Exact in f32, and unit beyond it: z is chosen after x and y were rounded. At 89° an error of 6e-8 in |wo|
+                // tilts the half vector by 2 % of a lobe of alpha 1e-4, which is a true difference of sample and density.
+                let w = promote(demote(direction(cos, phi)));
+                let z = (1.0 - w.x * w.x - w.y * w.y).max(0.0).sqrt();
+                let wo = promote(demote(Vec3::new(w.x, w.y, z)));
                 let name = format!("wo at {:.0}°, azimuth {:.0}°", cos.acos().to_degrees(), phi.to_degrees());
                 // The pilot only places borders, so it may be the same in every run.
                 let cells = Cells::following(reference, wo, &mut Random::new(seed_for(0, &name)));
