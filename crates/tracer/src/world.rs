@@ -109,7 +109,7 @@ impl World {
 
         let emitters = world.triangles.iter().filter_map(|t| {
             let radiance = world.materials[t.material as usize].emission;
-            (radiance.luminance() > 0.0).then(|| Emitter { corners: t.corners, normal: t.normal, radiance })
+            (radiance.luminance() > 0.0).then_some(Emitter { corners: t.corners, normal: t.normal, radiance })
         });
         world.lights = Lights::new(emitters.collect(), scene.environment);
         world.plan.area_lights = world.triangles.iter().any(|t| world.materials[t.material as usize].emits());
