@@ -59,7 +59,7 @@ impl Random {
 
 /// Eight vectors side by side.
 pub(crate) fn side_by_side(v: [Vec3<f32>; 8]) -> Vec3<F32x8> {
-    Vec3::new(F32x8::from_fn(|l| v[l].x), F32x8::from_fn(|l| v[l].y), F32x8::from_fn(|l| v[l].z))
+    Vec3::from_lanes(|l| v[l])
 }
 
 /// A closed sphere of n·n·2 triangles, radius 1, moved by `center`.

@@ -70,7 +70,7 @@ impl Accel for Brute {
 /// One triangle in all eight lanes.
 #[inline(always)]
 fn splat_corners(triangle: &WorldTriangle) -> [Vec3<F32x8>; 3] {
-    triangle.corners.map(|v| Vec3::new(F32x8::splat(v.x), F32x8::splat(v.y), F32x8::splat(v.z)))
+    triangle.corners.map(Vec3::broadcast)
 }
 
 #[inline(always)]

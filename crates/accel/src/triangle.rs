@@ -57,8 +57,7 @@ impl Beam {
     /// Prepares rays for triangles within the bounds [lo, hi].
     pub fn new(origin: Vec3<F32x8>, dir: Vec3<F32x8>, lo: Vec3<f32>, hi: Vec3<f32>) -> Self {
         let (u, v) = tangents(dir);
-        let splat = |p: Vec3<f32>| Vec3::new(F32x8::splat(p.x), F32x8::splat(p.y), F32x8::splat(p.z));
-        let (to_lo, to_hi) = ((splat(lo) - origin).abs(), (splat(hi) - origin).abs());
+        let (to_lo, to_hi) = ((Vec3::broadcast(lo) - origin).abs(), (Vec3::broadcast(hi) - origin).abs());
         let reach = to_lo.x.max(to_hi.x) + to_lo.y.max(to_hi.y) + to_lo.z.max(to_hi.z);
         let pad = reach * F32x8::splat(PAD);
         // A direction without an x never leaves its slab: a large finite slope says so without 0·∞.
@@ -239,7 +238,7 @@ impl Plane<f32> {
     /// The same plane in every lane.
     #[inline(always)]
     pub fn splat(&self) -> Plane<F32x8> {
-        let each = |v: Vec3<f32>| Vec3::new(F32x8::splat(v.x), F32x8::splat(v.y), F32x8::splat(v.z));
+        let each = Vec3::broadcast;
         Plane {
             corner: each(self.corner),
             normal: each(self.normal),

@@ -5,6 +5,7 @@
 //! cost three instructions and hide NaNs; ours are the single instruction, with the rule of [`Real::min`].
 
 use crate::real::{Mask, Precision, Real};
+use crate::vec3::Vec3;
 use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, Mul, MulAssign, Neg, Not, Shr, Sub};
 use wide::{f32x8, i32x8, u32x8};
 
@@ -140,6 +141,19 @@ impl U32x8 {
     #[inline(always)]
     pub fn select(mask: Mask8, yes: Self, no: Self) -> Self {
         F32x8::select(mask, yes.as_real(), no.as_real()).to_bits()
+    }
+}
+
+impl Vec3<F32x8> {
+    /// The same vector in every lane.
+    #[inline(always)]
+    pub fn broadcast(v: Vec3<f32>) -> Self {
+        Self::new(F32x8::splat(v.x), F32x8::splat(v.y), F32x8::splat(v.z))
+    }
+    /// Lane *i* is `f(i)`; `f` is asked once per component and lane.
+    #[inline(always)]
+    pub fn from_lanes(f: impl Fn(usize) -> Vec3<f32>) -> Self {
+        Self::new(F32x8::from_fn(|i| f(i).x), F32x8::from_fn(|i| f(i).y), F32x8::from_fn(|i| f(i).z))
     }
 }
 

@@ -69,20 +69,10 @@ impl Lights {
     #[inline(always)]
     pub(crate) fn pick(&self, place: U32x8, toss: F32x8) -> Emitters {
         let emitters = each_lane(|lane| &self.emitters[self.slot(place.lane(lane), toss.lane(lane))]);
-        let corner = |c: usize| {
-            Vec3::new(
-                F32x8::from_fn(|l| emitters[l].corners[c].x),
-                F32x8::from_fn(|l| emitters[l].corners[c].y),
-                F32x8::from_fn(|l| emitters[l].corners[c].z),
-            )
-        };
+        let corner = |c: usize| Vec3::from_lanes(|l| emitters[l].corners[c]);
         Emitters {
             corners: [corner(0), corner(1), corner(2)],
-            normal: Vec3::new(
-                F32x8::from_fn(|l| emitters[l].normal.x),
-                F32x8::from_fn(|l| emitters[l].normal.y),
-                F32x8::from_fn(|l| emitters[l].normal.z),
-            ),
+            normal: Vec3::from_lanes(|l| emitters[l].normal),
             radiance: Rgb::new(
                 F32x8::from_fn(|l| emitters[l].radiance.r),
                 F32x8::from_fn(|l| emitters[l].radiance.g),

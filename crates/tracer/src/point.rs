@@ -66,19 +66,9 @@ impl ShadingPoints {
             world.triangle_index(instance, prim)
         });
         let triangles = each_lane(|l| &world.triangles[index[l]]);
-        let corner = |c: usize| {
-            Vec3::new(
-                F32x8::from_fn(|l| triangles[l].corners[c].x),
-                F32x8::from_fn(|l| triangles[l].corners[c].y),
-                F32x8::from_fn(|l| triangles[l].corners[c].z),
-            )
-        };
+        let corner = |c: usize| Vec3::from_lanes(|l| triangles[l].corners[c]);
         let corners = [corner(0), corner(1), corner(2)];
-        let winding = Vec3::new(
-            F32x8::from_fn(|l| triangles[l].normal.x),
-            F32x8::from_fn(|l| triangles[l].normal.y),
-            F32x8::from_fn(|l| triangles[l].normal.z),
-        );
+        let winding = Vec3::from_lanes(|l| triangles[l].normal);
         let cos = winding.dot(wo);
         let front = cos.ge(F32x8::ZERO);
         let side = F32x8::ONE.copysign(cos);
@@ -88,13 +78,7 @@ impl ShadingPoints {
         if plan.smooth_normals {
             let flat = [Vec3::new(0.0, 0.0, 0.0); 3];
             let normals = each_lane(|l| world.normals.get(index[l]).unwrap_or(&flat));
-            let at = |c: usize| {
-                Vec3::new(
-                    F32x8::from_fn(|l| normals[l][c].x),
-                    F32x8::from_fn(|l| normals[l][c].y),
-                    F32x8::from_fn(|l| normals[l][c].z),
-                )
-            };
+            let at = |c: usize| Vec3::from_lanes(|l| normals[l][c]);
             let b0 = F32x8::ONE - bary[0] - bary[1];
             let n = ((at(0) * b0).along(bary[0], at(1)).along(bary[1], at(2)) * side).normalize_or(normal);
             // A shading normal that does not face the viewer, or that leans behind the surface, is of no use.

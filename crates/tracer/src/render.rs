@@ -12,9 +12,9 @@ use crate::sampler::{Purpose, Sampler};
 use crate::scene::Scene;
 use crate::shade::{self, Context, Gathered};
 use crate::stats::{LargeSample, RenderStats, TileStats};
-use crate::world::{World, splat};
+use crate::world::World;
 use gonio_accel::{Accel, Hit8, Ray8, RayKind};
-use gonio_kernel::{F32x8, Mask8, Real, Rgb, U32x8};
+use gonio_kernel::{F32x8, Mask8, Real, Rgb, U32x8, Vec3};
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -247,7 +247,7 @@ impl TileWorker {
             let u = ctx.sampler.draw(pixel, sample, 0, Purpose::Camera);
             let x = ((pixel & U32x8::splat(0xffff)).to_real() + u.unit(0)) * two / width - F32x8::ONE;
             let y = F32x8::ONE - ((pixel >> 16).to_real() + u.unit(1)) * two / height;
-            let ray = Ray8::new(splat(ctx.world.view.origin), ctx.world.view.directions(x, y));
+            let ray = Ray8::new(Vec3::broadcast(ctx.world.view.origin), ctx.world.view.directions(x, y));
             self.queue.push(
                 Ray8 { mask: Mask8::first(lanes), ..ray },
                 Paths {

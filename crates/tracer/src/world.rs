@@ -211,14 +211,11 @@ impl View {
     /// Unit directions through places (x, y) of the picture, both in [−1, 1], y up.
     #[inline(always)]
     pub(crate) fn directions(&self, x: F32x8, y: F32x8) -> Vec3<F32x8> {
-        splat(self.forward).along(x, splat(self.right)).along(y, splat(self.up)).normalize()
+        Vec3::broadcast(self.forward)
+            .along(x, Vec3::broadcast(self.right))
+            .along(y, Vec3::broadcast(self.up))
+            .normalize()
     }
-}
-
-/// The same vector in every lane.
-#[inline(always)]
-pub(crate) fn splat(v: Vec3<f32>) -> Vec3<F32x8> {
-    Vec3::new(F32x8::splat(v.x), F32x8::splat(v.y), F32x8::splat(v.z))
 }
 
 /// The same colour in every lane.

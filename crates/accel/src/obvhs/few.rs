@@ -59,7 +59,7 @@ impl Few {
     fn project(&self, ray: &Ray8, projected: &mut Projected) -> Beam {
         let beam = Beam::new(ray.origin, ray.dir, self.lo, self.hi);
         for (v, p) in self.vertices.iter().zip(projected) {
-            *p = beam.project(Vec3::new(F32x8::splat(v.x), F32x8::splat(v.y), F32x8::splat(v.z)));
+            *p = beam.project(Vec3::broadcast(*v));
         }
         beam
     }
