@@ -9,6 +9,7 @@ use crate::support::{cornell_box, repository};
 use gonio_tracer::{Backend, RenderSettings, World, render};
 use serde::Deserialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::ops::ControlFlow;
 
 #[derive(Deserialize)]
 struct Reference {
@@ -62,7 +63,7 @@ fn the_cornell_box_agrees_with_mitsuba() {
     for seed in 0..reference.seeds as u64 {
         let mut settings = RenderSettings { seed: 1000 + seed, ..RenderSettings::of(&scene, &world) };
         settings.max_depth = reference.scattering_events;
-        let picture = render(&world, &*accel, &settings, &mut |_| ()).picture;
+        let picture = render(&world, &*accel, &settings, &mut |_| ControlFlow::Continue(())).picture;
         let mut sums = vec![0.0; reference.mean.len()];
         for (i, rgb) in picture.rgb.iter().enumerate() {
             let at = i / size / block * per_row + i % size / block;

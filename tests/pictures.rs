@@ -5,12 +5,13 @@ use glam::{DAffine3, DVec3};
 use gonio_kernel::Rgb;
 use gonio_tracer::scene::{Color, FresnelSpec, LobeSpec, Model, Scene};
 use gonio_tracer::{Backend, Crop, Plan, RenderSettings, Rendering, World, render};
+use std::ops::ControlFlow;
 
 fn rendered(scene: &Scene, backend: Backend, change: impl Fn(&mut RenderSettings)) -> Rendering {
     let world = World::new(scene).expect("the scene is sound");
     let mut settings = RenderSettings::of(scene, &world);
     change(&mut settings);
-    render(&world, &*backend.build(world.geometry()), &settings, &mut |_| ())
+    render(&world, &*backend.build(world.geometry()), &settings, &mut |_| ControlFlow::Continue(()))
 }
 
 fn mean(rendering: &Rendering) -> [f64; 3] {

@@ -474,7 +474,7 @@ fn pictures_that_cannot_be_written_say_so_and_leave_nothing_behind() {
     let folder = Folder::new();
     let picture = Picture { width: 1, height: 1, rgb: vec![[1.0; 3]] };
     let nowhere = folder.0.join("absent/a.exr");
-    let text = write_exr(&nowhere, &picture, &Metadata::default()).unwrap_err().to_string();
+    let text = write_exr(&nowhere, &picture, None, &Metadata::default()).unwrap_err().to_string();
     assert!(folder.strip(&text).starts_with("absent/a.exr: cannot be written: "), "{text}");
     let text = write_png(&nowhere, &picture, 0.0).unwrap_err().to_string();
     assert!(folder.strip(&text).starts_with("absent/a.exr: cannot be written: "), "{text}");

@@ -4,7 +4,8 @@
 //! its instruments to `gonio-lab`. What is here reads arguments, hands them on, and writes what comes back.
 //!
 //! Results go to files or standard output, everything else (warnings, progress, errors) to standard error. A file appears
-//! whole or not at all. Exit codes: 0 success; 1 an error; 2 wrong usage; 3 a check of the validation failed.
+//! whole or not at all. Exit codes: 0 success; 1 an error; 2 wrong usage; 3 a check of the validation failed; 75 a render
+//! was stopped and its picture is good; 130 a run was interrupted and quit at once.
 #![forbid(unsafe_code)]
 
 mod bsdf;
@@ -12,6 +13,7 @@ mod cpu;
 mod output;
 mod random;
 mod render;
+mod signals;
 mod usage;
 mod validate;
 
@@ -21,7 +23,8 @@ use clap::{Parser, Subcommand};
 use std::io;
 use std::process::ExitCode;
 
-const EXIT_CODES: &str = "Exit codes: 0 success; 1 an error; 2 wrong usage; 3 a check of the validation failed.";
+const EXIT_CODES: &str = "Exit codes: 0 success; 1 an error; 2 wrong usage; 3 a check of the validation failed; \
+                          75 a render was stopped early, its picture is written; 130 interrupted.";
 
 /// A reflectance kernel that can be trusted, and the eight-wide path tracer that proves it.
 #[derive(Parser)]
@@ -49,6 +52,9 @@ pub fn run() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
+    if let Err(error) = signals::listen() {
+        usage::warn(&format!("signals are left to the system: {error}"));
+    }
     let result = match cli.command {
         Command::Render(args) => render::run(&args),
         Command::Bsdf(args) => bsdf::run(&args),

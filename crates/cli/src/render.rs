@@ -1,25 +1,30 @@
 //! `gonio render`: a scene in, pictures and statistics out.
 
+mod pictures;
 mod progress;
 mod stats;
 
 use crate::output::{Output, Target, probe, write_text};
+use crate::signals;
 use crate::usage::{Usage, several, warn};
-use anyhow::{Context, Result};
-use gonio_tracer::image::{Metadata, write_exr, write_png};
+use anyhow::Result;
 use gonio_tracer::scene::Scene;
-use gonio_tracer::{Backend, Crop, RenderSettings, Rendering, World};
-use std::fs::{self, File};
+use gonio_tracer::{Backend, Crop, RenderSettings, World};
+use pictures::{Origin, extension, is_picture};
 use std::io::{self, IsTerminal};
-use std::path::{Path, PathBuf};
+use std::ops::ControlFlow;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
 /// Render a scene.
 ///
 /// Reads a scene file (.toml) or an OBJ file alone (.obj), and writes linear OpenEXR (.exr) or 8-bit sRGB (.png). The
-/// picture depends on the scene, the seed and the number of samples, never on the number of threads. Warnings and, on a
-/// terminal, progress go to standard error.
+/// picture depends on the scene, the seed and the number of samples, never on the number of threads. An EXR file also has
+/// the layers albedo, normal, depth, direct, indirect, variance and sampleCount. Warnings and progress go to standard error.
+///
+/// Ctrl-C or SIGTERM: the pass over the picture is finished, the picture written, and the exit code is 75; a second one
+/// quits at once, with 130. SIGHUP: the picture so far is written, and the render goes on.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Scene file (.toml) or OBJ file (.obj)
@@ -51,6 +56,12 @@ pub(crate) struct Args {
     /// Render only the pixels X0 ≤ x < X1, Y0 ≤ y < Y1, counted from the top left; each is as in the whole picture
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = crop)]
     crop: Option<[u32; 4]>,
+    /// Write the picture alone into EXR files, without layers
+    #[arg(long)]
+    no_layers: bool,
+    /// How progress is shown on standard error
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = progress::Mode::Auto)]
+    progress: progress::Mode,
     /// Write statistics as JSON; - for standard output
     #[arg(long, value_name = "STATS.json")]
     stats: Option<Target>,
@@ -83,24 +94,40 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let build_seconds = start.elapsed().as_secs_f64();
 
     let settings = settings(args, &scene, &world);
-    let mut bar = progress::Bar::new(settings.spp);
-    let rendering = gonio_tracer::render(&world, &*accel, &settings, &mut |progress| bar.update(&progress));
-    bar.finish();
-    if rendering.stats.dropped_samples > 0 {
-        let (dropped, all) = (rendering.stats.dropped_samples, rendering.stats.samples);
+    let times = stats::Times { load_seconds, build_seconds };
+    let origin = Origin { scene_file: &args.scene, scene: &scene, settings: &settings, backend: args.backend, times };
+    let mut report = progress::Report::new(args.progress);
+    signals::work_in_passes();
+    let rendering = gonio_tracer::render(&world, &*accel, &settings, &mut |pass| {
+        report.pass(&pass.progress);
+        let done = pass.progress.spp_done == pass.progress.spp;
+        if signals::show() && !done {
+            let files: Vec<Target> = args.output.iter().filter(|target| **target != Target::Stdout).cloned().collect();
+            if let Err(error) = pictures::write(&files, &origin, &pass.develop()) {
+                warn(&format!("{error:#}"));
+            }
+        }
+        if signals::stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    report.finish();
+    let samples = &rendering.stats;
+    if samples.dropped_samples > 0 {
+        let (dropped, all) = (samples.dropped_samples, samples.samples);
         warn(&format!("{dropped} of {all} samples were not finite or out of range and count as black"));
     }
-
-    let times = stats::Times { load_seconds, build_seconds };
-    write_pictures(args, &scene, &settings, &rendering, &times)?;
-    let stats = stats::stats(args.backend, &settings, &rendering, &times);
+    let stopped = samples.spp < settings.spp;
+    if stopped {
+        warn(&format!("stopped with {} of {} samples per pixel", samples.spp, settings.spp));
+    }
+    pictures::write_or_rescue(&args.output, &origin, &rendering)?;
+    let stats = stats::stats(&origin, &rendering);
     if let Some(target) = &args.stats {
         write_text(target, &format!("{stats:#}\n"))?;
     }
     if args.json {
         write_text(&Target::Stdout, &format!("{stats}\n"))?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(if stopped { ExitCode::from(signals::STOPPED) } else { ExitCode::SUCCESS })
 }
 
 /// Finds out before the work starts whether its results can be kept.
@@ -143,61 +170,10 @@ fn settings(args: &Args, scene: &Scene, world: &World) -> RenderSettings {
     settings.max_depth = args.max_depth.unwrap_or(settings.max_depth);
     settings.russian_roulette &= !args.no_russian_roulette;
     settings.threads = args.threads;
+    let shows_layers = |target: &Target| !matches!(target, Target::File(path) if extension(path) == "png");
+    settings.layers = !args.no_layers && args.output.iter().any(shows_layers);
     settings.crop = args.crop.map(|[x0, y0, x1, y1]| Crop { x0, x1, y0, y1 });
     settings
-}
-
-fn write_pictures(
-    args: &Args,
-    scene: &Scene,
-    settings: &RenderSettings,
-    rendering: &Rendering,
-    times: &stats::Times,
-) -> Result<()> {
-    let picture = &rendering.picture;
-    let other = vec![
-        ("scene".to_owned(), args.scene.display().to_string()),
-        ("plan".to_owned(), settings.plan.to_string()),
-        ("russian_roulette".to_owned(), settings.russian_roulette.to_string()),
-    ];
-    let metadata = Metadata {
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        seed: settings.seed,
-        spp: settings.spp,
-        max_depth: settings.max_depth,
-        backend: args.backend.to_string(),
-        samples: rendering.stats.samples,
-        load_seconds: times.load_seconds,
-        build_seconds: times.build_seconds,
-        render_seconds: rendering.stats.render_seconds,
-        film_hash: rendering.stats.film_hash.clone(),
-        other,
-    };
-    for target in &args.output {
-        match target {
-            Target::File(path) if extension(path) == "png" => write_png(path, picture, scene.film.exposure)?,
-            Target::File(path) => write_exr(path, picture, &metadata)?,
-            Target::Stdout => {
-                // The encoder writes files; a pipe gets a copy of one.
-                let path = std::env::temp_dir().join(format!("gonio-{}.exr", std::process::id()));
-                let copied = write_exr(&path, picture, &metadata).map_err(anyhow::Error::from).and_then(|()| {
-                    let mut file = File::open(&path)?;
-                    io::copy(&mut file, &mut io::stdout()).context("standard output: cannot be written")
-                });
-                let _ = fs::remove_file(&path); // left in the system's temporary folder at worst
-                copied?;
-            }
-        }
-    }
-    Ok(())
-}
-
-fn extension(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
-}
-
-fn is_picture(path: &Path) -> bool {
-    matches!(extension(path).as_str(), "exr" | "png")
 }
 
 fn picture(text: &str) -> Result<Target, String> {

@@ -8,7 +8,7 @@
 use crate::sampler::hash2;
 
 /// Units per 1.0 of radiance.
-const UNIT: f64 = (1_u64 << 22) as f64;
+pub(crate) const UNIT: f64 = (1_u64 << 22) as f64;
 /// Samples must be smaller than this in magnitude.
 const LARGEST: f32 = (1_u32 << 21) as f32;
 
@@ -21,25 +21,41 @@ pub(crate) struct Pixel {
 }
 
 impl Pixel {
-    /// Adds a sample; `pixel` and `sample` address its dither.
+    /// Adds a sample; `pixel` and `sample` address its dither. Whether it counts, or was dropped.
     #[inline]
-    pub(crate) fn add(&mut self, rgb: [f32; 3], pixel: u32, sample: u32) {
+    pub(crate) fn add(&mut self, rgb: [f32; 3], pixel: u32, sample: u32) -> bool {
         self.count += 1;
         // A NaN fails the comparison.
-        if !rgb.iter().all(|x| x.abs() < LARGEST) {
+        let counts = rgb.iter().all(|x| x.abs() < LARGEST);
+        if counts {
+            for (sum, x) in self.sum.iter_mut().zip(rgb) {
+                *sum += units(x, pixel, sample);
+            }
+        } else {
             self.dropped += 1;
-            return;
         }
-        let dither = f64::from(hash2(pixel, sample)) / 4_294_967_296.0 - 0.5;
-        for (sum, x) in self.sum.iter_mut().zip(rgb) {
-            *sum += round_to_i64(f64::from(x).mul_add(UNIT, dither));
-        }
+        counts
     }
 
     /// The mean of the samples, dropped ones counting as black; black if there are none.
     pub(crate) fn mean(&self) -> [f32; 3] {
+        self.mean_of(self.sum)
+    }
+
+    /// The mean over this pixel's samples of a sum of [`units`].
+    pub(crate) fn mean_of(&self, sum: [i64; 3]) -> [f32; 3] {
         let scale = if self.count > 0 { 1.0 / (UNIT * f64::from(self.count)) } else { 0.0 };
-        self.sum.map(|s| (s as f64 * scale) as f32)
+        sum.map(|s| (s as f64 * scale) as f32)
+    }
+
+    /// Σx over the samples, in units.
+    pub(crate) fn sum(&self) -> [i64; 3] {
+        self.sum
+    }
+
+    /// How many samples there are, dropped ones included.
+    pub(crate) fn count(&self) -> u32 {
+        self.count
     }
 
     /// How many samples were not finite or too large.
@@ -48,8 +64,15 @@ impl Pixel {
     }
 }
 
+/// A radiance in units, rounded with the dither of its sample.
+#[inline]
+pub(crate) fn units(x: f32, pixel: u32, sample: u32) -> i64 {
+    let dither = f64::from(hash2(pixel, sample)) / 4_294_967_296.0 - 0.5;
+    round_to_i64(f64::from(x).mul_add(UNIT, dither))
+}
+
 /// The nearest integer of |x| < 2⁵¹: adding 1.5·2⁵² leaves it in the low bits, with no cast that could hide a NaN.
-fn round_to_i64(x: f64) -> i64 {
+pub(crate) fn round_to_i64(x: f64) -> i64 {
     const MAGIC: f64 = 6_755_399_441_055_744.0;
     (x + MAGIC).to_bits().wrapping_sub(MAGIC.to_bits()).cast_signed()
 }
@@ -91,7 +114,7 @@ mod tests {
         // 1e-6 is about four units; rounding noise of n samples has a standard error of half a unit over √n.
         let n = 200_000;
         let mut p = Pixel::default();
-        (0..n).for_each(|i| p.add([1e-6; 3], 1, i));
+        assert!((0..n).all(|i| p.add([1e-6; 3], 1, i)));
         assert!((f64::from(p.mean()[0]) - 1e-6).abs() < 5.0 * 0.5 / UNIT / f64::from(n).sqrt());
     }
 
@@ -99,9 +122,9 @@ mod tests {
     fn what_is_not_finite_or_too_large_is_dropped_and_counted() {
         let mut p = Pixel::default();
         for x in [f32::NAN, f32::INFINITY, -f32::INFINITY, LARGEST] {
-            p.add([x, 0.0, 0.0], 0, 0);
+            assert!(!p.add([x, 0.0, 0.0], 0, 0));
         }
-        p.add([4.0, 0.0, LARGEST.next_down()], 0, 0);
+        assert!(p.add([4.0, 0.0, LARGEST.next_down()], 0, 0));
         assert_eq!(p.dropped(), 4);
         assert!((p.mean()[0] - 0.8).abs() < 1e-6);
     }

@@ -1,15 +1,17 @@
 //! Pictures on disk: OpenEXR with everything needed to render it again, and PNG to look at.
 //!
-//! Both are written to a temporary file beside the target, which is then renamed: whoever looks at the target sees the
-//! old picture or the whole new one, and a full disk leaves nothing behind.
+//! An EXR file has one part, whose channels are `R`, `G`, `B` and, with [`Layers`], `albedo.R` … `sampleCount`: dotted names
+//! are how compositors find layers. Channels are f32, `sampleCount` is u32. A crop's data window lies where the crop lies in
+//! the display window of the whole picture.
 
-use std::fs;
-use std::io::{BufWriter, Cursor, Write};
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
 
-use ::exr::meta::attribute::Chromaticities;
+use ::exr::meta::attribute::{Chromaticities, IntegerBounds};
 use ::exr::prelude::{self as exr, ReadChannels, ReadLayers, WritableImage};
+
+use crate::layers::Layers;
+use crate::whole_file::WholeFile;
 
 /// A picture in linear Rec. 709, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,8 +47,21 @@ pub struct Metadata {
     pub render_seconds: f64,
     /// Hash of the film's integers, in hexadecimal.
     pub film_hash: String,
+    /// Where a crop's upper left pixel lies in the whole picture, and the size of that; `None` if the picture is whole.
+    pub window: Option<Window>,
+    /// The standard attributes `worldToCamera` and `worldToNDC`, see [`crate::scene::Camera::matrices`].
+    pub matrices: Option<[[f32; 16]; 2]>,
     /// Further attributes: name and text.
     pub other: Vec<(String, String)>,
+}
+
+/// A picture's place in a larger one, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// Column and row of its upper left pixel.
+    pub at: [u32; 2],
+    /// Size of the larger one.
+    pub of: [u32; 2],
 }
 
 /// Why a picture could not be written or read. It prints as `out/a.exr: cannot be written: …`.
@@ -59,25 +74,44 @@ pub struct ImageError {
     pub message: String,
 }
 
-/// Writes linear f32 channels, ZIP compressed, lines in increasing order, equal bytes for equal input.
+/// Writes an EXR file, see [`encode_exr`].
 ///
 /// # Errors
-/// The picture has no pixels or the wrong number of them, or the file cannot be written.
-pub fn write_exr(path: &Path, picture: &Picture, metadata: &Metadata) -> Result<(), ImageError> {
-    check(path, picture)?;
-    let width = picture.width as usize;
-    let channels = exr::SpecificChannels::rgb(|at: exr::Vec2<usize>| {
-        let [r, g, b] = picture.rgb[at.y() * width + at.x()];
-        (r, g, b)
-    });
+/// As [`encode_exr`], or the file cannot be written.
+pub fn write_exr(
+    path: &Path,
+    picture: &Picture,
+    layers: Option<&Layers>,
+    metadata: &Metadata,
+) -> Result<(), ImageError> {
+    replace(path, encode_exr(picture, layers, metadata))
+}
+
+/// The bytes of an EXR file: ZIP compressed, lines in increasing order, equal bytes for equal input.
+///
+/// # Errors
+/// A sentence: the picture has no pixels, or it or a layer has the wrong number of them.
+pub fn encode_exr(picture: &Picture, layers: Option<&Layers>, metadata: &Metadata) -> Result<Vec<u8>, String> {
+    check(picture)?;
+    let mut channels = Vec::new();
+    colours(&mut channels, "", ["R", "G", "B"], &picture.rgb);
+    if let Some(layers) = layers {
+        layer_channels(&mut channels, layers);
+    }
+    if let Some(wrong) = channels.iter().find(|c| c.sample_data.len() != picture.rgb.len()) {
+        return Err(format!("the channel {} has {} pixels", wrong.name, wrong.sample_data.len()));
+    }
     let encoding = exr::Encoding {
         compression: exr::Compression::ZIP16,
         blocks: exr::Blocks::ScanLines,
         line_order: exr::LineOrder::Increasing,
     };
-    let size = (width, picture.height as usize);
-    let layer = exr::Layer::new(size, layer_attributes(metadata), encoding, channels);
-    let mut image = exr::Image::from_layer(layer);
+    let size = (picture.width as usize, picture.height as usize);
+    let channels = exr::AnyChannels::sort(channels.into());
+    let mut image = exr::Image::from_layer(exr::Layer::new(size, layer_attributes(metadata), encoding, channels));
+    if let Some(Window { of: [width, height], .. }) = metadata.window {
+        image.attributes.display_window = IntegerBounds::from_dimensions((width as usize, height as usize));
+    }
     image.attributes.chromaticities = Some(Chromaticities {
         red: exr::Vec2(0.64, 0.33),
         green: exr::Vec2(0.30, 0.60),
@@ -89,9 +123,32 @@ pub fn write_exr(path: &Path, picture: &Picture, metadata: &Metadata) -> Result<
         .write()
         .non_parallel() // called from inside a thread pool, a picture is small beside its rendering
         .to_buffered(Cursor::new(&mut bytes))
-        .map_err(|error| failure(path, format!("cannot be encoded: {error}")))?;
+        .map_err(|error| format!("it cannot be encoded: {error}"))?;
     sort_attributes(&mut bytes);
-    replace(path, &bytes)
+    Ok(bytes)
+}
+
+type Channel = exr::AnyChannel<exr::FlatSamples>;
+
+/// Three channels of a layer.
+fn colours(channels: &mut Vec<Channel>, layer: &str, names: [&str; 3], values: &[[f32; 3]]) {
+    for (c, name) in names.into_iter().enumerate() {
+        let samples = values.iter().map(|v| v[c]).collect();
+        channels.push(Channel::new(text(&format!("{layer}{name}")), exr::FlatSamples::F32(samples)));
+    }
+}
+
+fn layer_channels(channels: &mut Vec<Channel>, layers: &Layers) {
+    let rgb = ["R", "G", "B"];
+    colours(channels, "albedo.", rgb, &layers.albedo);
+    colours(channels, "normal.", ["X", "Y", "Z"], &layers.normal);
+    colours(channels, "direct.", rgb, &layers.direct);
+    colours(channels, "indirect.", rgb, &layers.indirect);
+    if let Some(variance) = &layers.variance {
+        colours(channels, "variance.", rgb, variance);
+    }
+    channels.push(Channel::new(text("depth.Z"), exr::FlatSamples::F32(layers.depth.clone())));
+    channels.push(Channel::new(text("sampleCount"), exr::FlatSamples::U32(layers.sample_count.clone())));
 }
 
 /// Brings the header's attributes into the order of their names: `exr` takes them from a hash map, in an order that
@@ -118,6 +175,9 @@ fn sort_attributes(file: &mut [u8]) {
 fn layer_attributes(metadata: &Metadata) -> exr::LayerAttributes {
     let mut attributes = exr::LayerAttributes {
         software_name: Some(text(&format!("gonio {}", metadata.version))),
+        layer_position: metadata.window.map_or(exr::Vec2(0, 0), |w| exr::Vec2(w.at[0] as i32, w.at[1] as i32)),
+        world_to_camera: metadata.matrices.map(|m| m[0]),
+        world_to_normalized_device: metadata.matrices.map(|m| m[1]),
         ..exr::LayerAttributes::default()
     };
     let strings = [
@@ -151,22 +211,30 @@ fn text(string: &str) -> exr::Text {
     exr::Text::new_or_none(plain).unwrap_or_default()
 }
 
-/// Writes an 8-bit sRGB PNG of the picture brightened by `exposure` stops.
+/// Writes a PNG file, see [`encode_png`].
+///
+/// # Errors
+/// As [`encode_png`], or the file cannot be written.
+pub fn write_png(path: &Path, picture: &Picture, exposure: f32) -> Result<(), ImageError> {
+    replace(path, encode_png(picture, exposure))
+}
+
+/// The bytes of an 8-bit sRGB PNG file of the picture brightened by `exposure` stops.
 ///
 /// Values are clamped to [0, 1]; a value that is not a number is black.
 ///
 /// # Errors
-/// The picture has no pixels or the wrong number of them, or the file cannot be written.
-pub fn write_png(path: &Path, picture: &Picture, exposure: f32) -> Result<(), ImageError> {
-    check(path, picture)?;
+/// A sentence: the picture has no pixels or the wrong number of them.
+pub fn encode_png(picture: &Picture, exposure: f32) -> Result<Vec<u8>, String> {
+    check(picture)?;
     let gain = exposure.exp2();
     let encoded: Vec<u8> = picture.rgb.iter().flatten().map(|&value| encode_srgb(value * gain)).collect();
     let mut bytes = Vec::new();
     let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
     let kind = image::ExtendedColorType::Rgb8;
     image::ImageEncoder::write_image(encoder, &encoded, picture.width, picture.height, kind)
-        .map_err(|error| failure(path, format!("cannot be encoded: {error}")))?;
-    replace(path, &bytes)
+        .map_err(|error| format!("it cannot be encoded: {error}"))?;
+    Ok(bytes)
 }
 
 /// IEC 61966-2-1, encoding, rounded to the nearest of 256 levels.
@@ -200,11 +268,11 @@ pub fn read_exr(path: &Path) -> Result<Picture, ImageError> {
     }
 }
 
-fn check(path: &Path, picture: &Picture) -> Result<(), ImageError> {
+fn check(picture: &Picture) -> Result<(), String> {
     let count = u64::from(picture.width) * u64::from(picture.height);
     if count == 0 || count != picture.rgb.len() as u64 {
         let (width, height, found) = (picture.width, picture.height, picture.rgb.len());
-        return Err(failure(path, format!("a picture of {width} x {height} cannot have {found} pixels")));
+        return Err(format!("a picture of {width} x {height} cannot have {found} pixels"));
     }
     Ok(())
 }
@@ -213,30 +281,16 @@ fn failure(path: &Path, message: impl Into<String>) -> ImageError {
     ImageError { path: path.to_path_buf(), message: message.into() }
 }
 
-/// Puts a whole file in place of `path`, or changes nothing.
-fn replace(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
-    static COUNTER: AtomicU32 = AtomicU32::new(0); // two threads may write the same target
-    let Some(name) = path.file_name() else {
-        return Err(failure(path, "cannot be written: it names no file"));
-    };
-    let number = COUNTER.fetch_add(1, Ordering::Relaxed);
-    let unique = format!(".{}.{}-{number}.tmp", name.to_string_lossy(), std::process::id());
-    let temporary = path.with_file_name(unique);
-    write_through(&temporary, bytes).and_then(|()| fs::rename(&temporary, path)).map_err(|error| {
-        let _ = fs::remove_file(&temporary); // it may not exist; the first error is the one to tell
-        failure(path, format!("cannot be written: {error}"))
-    })
-}
-
-fn write_through(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let mut file = BufWriter::new(fs::File::options().write(true).create_new(true).open(path)?);
-    file.write_all(bytes)?;
-    file.into_inner()?.sync_all() // a full disk may only be noticed here
+/// Puts an encoded picture in place of `path`, or changes nothing.
+fn replace(path: &Path, encoded: Result<Vec<u8>, String>) -> Result<(), ImageError> {
+    let bytes = encoded.map_err(|why| failure(path, why))?;
+    WholeFile::write(path, &bytes).map_err(|error| failure(path, format!("cannot be written: {error}")))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn picture() -> Picture {
         let rgb = (0..15).map(|i| [i as f32, 1e-9 * i as f32, 1e9]).collect();
@@ -255,12 +309,18 @@ mod tests {
         let path = folder.join("a.exr");
         let seed = u64::MAX;
         let other = vec![("scene".to_owned(), "caf\u{e9}.toml".to_owned())];
-        let metadata =
-            Metadata { version: "1.2.3".to_owned(), seed, render_seconds: 0.5, other, ..Metadata::default() };
-        write_exr(&path, &picture(), &metadata).unwrap();
+        let metadata = Metadata {
+            version: "1.2.3".to_owned(),
+            seed,
+            render_seconds: 0.5,
+            window: Some(Window { at: [7, 2], of: [64, 32] }),
+            other,
+            ..Metadata::default()
+        };
+        write_exr(&path, &picture(), None, &metadata).unwrap();
         let bytes = fs::read(&path).unwrap();
         assert_eq!(read_exr(&path).unwrap(), picture());
-        write_exr(&path, &picture(), &metadata).unwrap(); // over the old one, with the same bytes
+        write_exr(&path, &picture(), None, &metadata).unwrap(); // over the old one, with the same bytes
         assert!(fs::read(&path).unwrap() == bytes, "the same picture has the same bytes");
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "no temporary file is left");
 
@@ -268,6 +328,8 @@ mod tests {
         let header = &meta.headers[0];
         assert_eq!(header.line_order, exr::LineOrder::Increasing);
         assert_eq!(header.compression, exr::Compression::ZIP16);
+        assert_eq!(header.own_attributes.layer_position, exr::Vec2(7, 2));
+        assert_eq!(header.shared_attributes.display_window, IntegerBounds::from_dimensions((64, 32)));
         assert_eq!(header.shared_attributes.chromaticities.unwrap().red, exr::Vec2(0.64, 0.33));
         assert_eq!(header.own_attributes.software_name.as_ref().unwrap().to_string(), "gonio 1.2.3");
         let attribute = |name: &str| header.own_attributes.other.get(&text(name)).cloned();
@@ -275,6 +337,47 @@ mod tests {
         assert_eq!(attribute("gonio_render_seconds"), Some(exr::AttributeValue::F64(0.5)));
         assert_eq!(attribute("gonio_scene"), Some(exr::AttributeValue::Text(text("caf?.toml"))));
         fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn layers_are_channels_with_dotted_names() {
+        let sum = |i: usize| [i as f32, 0.5, -1.0];
+        let every = || (0..15).map(sum).collect::<Vec<_>>();
+        let layers = Layers {
+            albedo: every(),
+            normal: every(),
+            depth: vec![2.5; 15],
+            direct: every(),
+            indirect: every(),
+            variance: None,
+            sample_count: vec![(1 << 24) + 1; 15], // f32 cannot hold it
+        };
+        let bytes = encode_exr(&picture(), Some(&layers), &Metadata::default()).unwrap();
+        let read = exr::read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+        let image = read.all_attributes().from_buffered(Cursor::new(bytes)).unwrap();
+        let channels = image.layer_data.channel_data.list;
+        let names: Vec<_> = channels.iter().map(|c| c.name.to_string()).collect();
+        let layer = |name: &str, parts: [&str; 3]| parts.map(|part| format!("{name}.{part}"));
+        let rgb = ["B", "G", "R"];
+        let expected: Vec<String> = rgb
+            .map(str::to_owned)
+            .into_iter()
+            .chain(layer("albedo", rgb))
+            .chain(["depth.Z".to_owned()])
+            .chain(layer("direct", rgb))
+            .chain(layer("indirect", rgb))
+            .chain(layer("normal", ["X", "Y", "Z"]))
+            .chain(["sampleCount".to_owned()])
+            .collect();
+        assert_eq!(names, expected);
+        let of = |name: &str| channels.iter().find(|c| c.name.eq(name)).unwrap().sample_data.clone();
+        assert_eq!(of("sampleCount"), exr::FlatSamples::U32(layers.sample_count.clone()));
+        assert_eq!(of("normal.X").value_by_flat_index(14).to_f32(), 14.0);
+        let wrong = Layers { depth: vec![0.0; 3], ..layers };
+        assert_eq!(
+            encode_exr(&picture(), Some(&wrong), &Metadata::default()).unwrap_err(),
+            "the channel depth.Z has 3 pixels"
+        );
     }
 
     #[test]
@@ -299,7 +402,7 @@ mod tests {
     #[test]
     fn pictures_of_the_wrong_size_are_refused() {
         let picture = Picture { width: 2, height: 2, rgb: vec![[0.0; 3]; 3] };
-        let error = write_exr(Path::new("a.exr"), &picture, &Metadata::default()).unwrap_err();
+        let error = write_exr(Path::new("a.exr"), &picture, None, &Metadata::default()).unwrap_err();
         assert_eq!(error.to_string(), "a.exr: a picture of 2 x 2 cannot have 3 pixels");
         let error = read_exr(Path::new("absent.exr")).unwrap_err().to_string();
         assert!(error.starts_with("absent.exr: cannot be read: "), "{error}");

@@ -7,12 +7,14 @@
 //! samples as integers → [`image`] writes the picture.
 //!
 //! ```no_run
+//! use std::ops::ControlFlow;
+//!
 //! use gonio_tracer::{Backend, RenderSettings, World, render, scene::Scene};
 //!
 //! let scene = Scene::load("scenes/cornell-box.toml".as_ref())?;
 //! let world = World::new(&scene)?;
 //! let accel = Backend::Obvhs.build(world.geometry());
-//! let rendering = render(&world, &*accel, &RenderSettings::of(&scene, &world), &mut |_| ());
+//! let rendering = render(&world, &*accel, &RenderSettings::of(&scene, &world), &mut |_| ControlFlow::Continue(()));
 //! println!("{}", rendering.stats.film_hash);
 //! # Ok::<(), gonio_tracer::scene::SceneError>(())
 //! ```
@@ -27,6 +29,7 @@ compile_error!(
 mod backend;
 mod film;
 pub mod image;
+mod layers;
 mod light;
 mod material;
 mod plan;
@@ -38,11 +41,13 @@ pub mod scene;
 mod shade;
 mod stats;
 pub mod texture;
+pub mod whole_file;
 pub mod world;
 
 pub use backend::Backend;
+pub use layers::Layers;
 pub use material::constant_surface;
 pub use plan::Plan;
-pub use render::{Crop, Progress, RenderSettings, Rendering, render};
+pub use render::{Crop, Pass, Progress, RenderSettings, Rendering, render};
 pub use stats::{LargeSample, RenderStats};
 pub use world::World;

@@ -2,10 +2,12 @@
 //!
 //! A tile's paths for a few samples form one queue of at most [`QUEUE`] states, small enough for the second-level cache.
 //! Stages: generate, then per bounce closest hit, sort by material, shade, shadow rays; then the film. Tiles are
-//! independent and sums are integers, so threads and order change nothing.
+//! independent and sums are integers, so threads, order and the length of passes change nothing. After each pass every
+//! pixel has the same number of samples: the caller may look at the picture, and may stop.
 
 use crate::film::{self, Pixel};
 use crate::image::Picture;
+use crate::layers::{DepthUnit, FirstHit, LayerSums, Layers};
 use crate::plan::Plan;
 use crate::queue::{Batch, Order, Paths, Queue, ShadowQueue};
 use crate::sampler::{Purpose, Sampler};
@@ -16,14 +18,19 @@ use crate::world::World;
 use gonio_accel::{Accel, Hit8, Ray8, RayKind};
 use gonio_kernel::{F32x8, Mask8, Real, Rgb, U32x8, Vec3};
 use rayon::prelude::*;
+use std::ops::{ControlFlow, Range};
 use std::time::Instant;
 
 /// Pixels along a tile's edge.
 const TILE: u32 = 16;
 /// Most paths in a tile's queue: 16 × 16 pixels, eight samples each.
 const QUEUE: usize = 2048;
-/// Samples per pixel between two reports of progress.
-const PASS: u32 = 16;
+/// A pass should take about this long \[s\]: a render that is told to stop finishes its pass first.
+const PASS_SECONDS: f64 = 2.0;
+/// Most samples of the first pass, whose speed is not known yet; at a million per second two passes' time.
+const FIRST_PASS: u64 = 1 << 22;
+/// Most samples per pixel of a pass: eight full queues of a tile.
+const LONGEST_PASS: u32 = 64;
 
 /// A rectangle of pixels, half open. Each pixel keeps the random numbers it has in the whole picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +60,8 @@ pub struct RenderSettings {
     pub threads: usize,
     /// The part of the picture to render, as far as it lies inside; `None` for all of it.
     pub crop: Option<Crop>,
+    /// Whether to gather [`Layers`] as well: about 170 bytes per pixel.
+    pub layers: bool,
     /// Which effects to look at; at least the world's own plan.
     pub plan: Plan,
 }
@@ -67,6 +76,7 @@ impl RenderSettings {
             russian_roulette: scene.integrator.russian_roulette,
             threads: 0,
             crop: None,
+            layers: false,
             plan: world.plan(),
         }
     }
@@ -90,8 +100,34 @@ pub struct Progress {
 pub struct Rendering {
     /// The mean radiance of each pixel.
     pub picture: Picture,
+    /// What lies beside it, if asked for.
+    pub layers: Option<Layers>,
     /// Counts and times.
     pub stats: RenderStats,
+}
+
+/// A finished pass: every pixel has the same number of samples.
+pub struct Pass<'a> {
+    film: &'a Film,
+    /// How far the render has come.
+    pub progress: Progress,
+}
+
+impl Pass<'_> {
+    /// The picture so far. The render goes on from where it is.
+    pub fn develop(&self) -> Rendering {
+        self.film.develop(self.progress.seconds)
+    }
+}
+
+/// All sums of a render.
+struct Film {
+    crop: Crop,
+    tiles: Vec<FilmTile>,
+    /// If layers are gathered.
+    depth_unit: Option<DepthUnit>,
+    threads: usize,
+    spp_done: u32,
 }
 
 /// A square of the film and its sums.
@@ -100,10 +136,13 @@ struct FilmTile {
     y0: u32,
     width: u32,
     pixels: Vec<Pixel>,
+    /// One per pixel, or none at all.
+    layers: Vec<LayerSums>,
     stats: TileStats,
 }
 
-/// Renders the world; `progress` is called after each pass, on the calling thread.
+/// Renders the world. `after_pass` is called on the calling thread after each pass of samples over the film; if it
+/// breaks, the render ends with the samples it has ([`RenderStats::spp`]).
 ///
 /// # Panics
 /// Never for a world and settings in their domains; a thread pool that cannot be made falls back to the global one.
@@ -111,17 +150,12 @@ pub fn render(
     world: &World,
     accel: &dyn Accel,
     settings: &RenderSettings,
-    progress: &mut dyn FnMut(Progress),
+    after_pass: &mut dyn FnMut(&Pass) -> ControlFlow<()>,
 ) -> Rendering {
     let start = Instant::now();
-    let film = world.film;
-    let whole = Crop { x0: 0, x1: film.width, y0: 0, y1: film.height };
-    let crop = settings.crop.map_or(whole, |c| Crop {
-        x0: c.x0.min(c.x1).min(film.width),
-        x1: c.x1.min(film.width),
-        y0: c.y0.min(c.y1).min(film.height),
-        y1: c.y1.min(film.height),
-    });
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build().ok();
+    let threads = pool.as_ref().map_or_else(rayon::current_num_threads, rayon::ThreadPool::current_num_threads);
+    let mut film = Film::new(world, settings, threads);
     let ctx = Context {
         world,
         plan: settings.plan,
@@ -129,65 +163,102 @@ pub fn render(
         max_depth: settings.max_depth,
         russian_roulette: settings.russian_roulette,
     };
-    let mut tiles = tiles_of(crop);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build().ok();
-    let threads = pool.as_ref().map_or_else(rayon::current_num_threads, rayon::ThreadPool::current_num_threads);
-    let mut done = 0;
-    while done < settings.spp {
-        let samples = done..(done + PASS).min(settings.spp);
-        let mut pass = || {
-            tiles
-                .par_iter_mut()
-                .for_each_init(TileWorker::default, |worker, tile| worker.render(&ctx, accel, tile, samples.clone()));
-        };
+    let per_sample = film.crop.pixels().max(1);
+    let mut length = (FIRST_PASS / per_sample).clamp(1, QUEUE as u64 / u64::from(TILE * TILE)) as u32;
+    while film.spp_done < settings.spp {
+        let began = Instant::now();
+        let samples = film.spp_done..film.spp_done.saturating_add(length).min(settings.spp);
+        let mut pass = || film.expose(&ctx, accel, samples.clone());
         match &pool {
             Some(pool) => pool.install(pass),
             None => pass(),
         }
-        done = samples.end;
-        let pixels = u64::from(crop.x1 - crop.x0) * u64::from(crop.y1 - crop.y0);
-        progress(Progress {
-            spp_done: done,
+        film.spp_done = samples.end;
+        let progress = Progress {
+            spp_done: samples.end,
             spp: settings.spp,
-            samples: pixels * u64::from(done),
+            samples: film.crop.pixels() * u64::from(samples.end),
             seconds: start.elapsed().as_secs_f64(),
+        };
+        if after_pass(&Pass { film: &film, progress }).is_break() {
+            break;
+        }
+        // At most twice as long as the one before, because the first may have been unusual.
+        let rate = f64::from(samples.end - samples.start) / began.elapsed().as_secs_f64().max(1e-9);
+        length = ((rate * PASS_SECONDS) as u32).clamp(1, length * 2).min(LONGEST_PASS);
+    }
+    film.develop(start.elapsed().as_secs_f64())
+}
+
+impl Crop {
+    fn pixels(&self) -> u64 {
+        u64::from(self.x1 - self.x0) * u64::from(self.y1 - self.y0)
+    }
+}
+
+impl Film {
+    fn new(world: &World, settings: &RenderSettings, threads: usize) -> Self {
+        let film = world.film;
+        let whole = Crop { x0: 0, x1: film.width, y0: 0, y1: film.height };
+        let crop = settings.crop.map_or(whole, |c| Crop {
+            x0: c.x0.min(c.x1).min(film.width),
+            x1: c.x1.min(film.width),
+            y0: c.y0.min(c.y1).min(film.height),
+            y1: c.y1.min(film.height),
+        });
+        let depth_unit = settings.layers.then(|| DepthUnit::for_depths_up_to(world.farthest_depth()));
+        Self { crop, tiles: tiles_of(crop, settings.layers), depth_unit, threads, spp_done: 0 }
+    }
+
+    /// Adds these samples to every pixel.
+    fn expose(&mut self, ctx: &Context, accel: &dyn Accel, samples: Range<u32>) {
+        let depth_unit = self.depth_unit;
+        self.tiles.par_iter_mut().for_each_init(TileWorker::default, |worker, tile| {
+            worker.render(ctx, accel, tile, depth_unit, samples.clone());
         });
     }
-    develop(crop, &tiles, threads, start)
+
+    /// The tiles put together.
+    fn develop(&self, seconds: f64) -> Rendering {
+        let mut stats = TileStats::default();
+        self.tiles.iter().for_each(|tile| stats.add(&tile.stats));
+        let pixels = self.gather(|tile| &tile.pixels);
+        let layers = self.depth_unit.map(|unit| Layers::develop(&pixels, &self.gather(|tile| &tile.layers), unit));
+        let dropped = pixels.iter().map(|p| u64::from(p.dropped())).sum();
+        let (width, height) = (self.crop.x1 - self.crop.x0, self.crop.y1 - self.crop.y0);
+        Rendering {
+            picture: Picture { width, height, rgb: pixels.iter().map(Pixel::mean).collect() },
+            layers,
+            stats: stats.finish(seconds, self.spp_done, dropped, film::hash(pixels.iter()), self.threads),
+        }
+    }
+
+    /// One value per pixel of the crop, rows from the top.
+    fn gather<T: Copy + Default>(&self, of: impl Fn(&FilmTile) -> &[T]) -> Vec<T> {
+        let width = (self.crop.x1 - self.crop.x0) as usize;
+        let mut all = vec![T::default(); width * (self.crop.y1 - self.crop.y0) as usize];
+        for tile in &self.tiles {
+            for (row, line) in of(tile).chunks(tile.width as usize).enumerate() {
+                let (x, y) = ((tile.x0 - self.crop.x0) as usize, (tile.y0 - self.crop.y0) as usize + row);
+                all[y * width + x..][..line.len()].copy_from_slice(line);
+            }
+        }
+        all
+    }
 }
 
 /// The crop cut into tiles, row by row.
-fn tiles_of(crop: Crop) -> Vec<FilmTile> {
+fn tiles_of(crop: Crop, layers: bool) -> Vec<FilmTile> {
     let mut tiles = Vec::new();
     for y0 in (crop.y0..crop.y1).step_by(TILE as usize) {
         for x0 in (crop.x0..crop.x1).step_by(TILE as usize) {
             let (width, height) = (TILE.min(crop.x1 - x0), TILE.min(crop.y1 - y0));
             let pixels = vec![Pixel::default(); (width * height) as usize];
-            tiles.push(FilmTile { x0, y0, width, pixels, stats: TileStats::default() });
+            let layers = vec![LayerSums::default(); if layers { pixels.len() } else { 0 }];
+            tiles.push(FilmTile { x0, y0, width, pixels, layers, stats: TileStats::default() });
         }
     }
     tiles
-}
-
-/// The tiles put together.
-fn develop(crop: Crop, tiles: &[FilmTile], threads: usize, start: Instant) -> Rendering {
-    let (width, height) = (crop.x1 - crop.x0, crop.y1 - crop.y0);
-    let mut pixels = vec![Pixel::default(); width as usize * height as usize];
-    let mut stats = TileStats::default();
-    for tile in tiles {
-        stats.add(&tile.stats);
-        for (row, line) in tile.pixels.chunks(tile.width as usize).enumerate() {
-            let at =
-                (tile.y0 - crop.y0) as usize * width as usize + row * width as usize + (tile.x0 - crop.x0) as usize;
-            pixels[at..at + line.len()].copy_from_slice(line);
-        }
-    }
-    let dropped = pixels.iter().map(|p| u64::from(p.dropped())).sum();
-    let rgb = pixels.iter().map(Pixel::mean).collect();
-    Rendering {
-        picture: Picture { width, height, rgb },
-        stats: stats.finish(start.elapsed().as_secs_f64(), dropped, film::hash(pixels.iter()), threads),
-    }
 }
 
 /// The queues of one thread, kept from tile to tile.
@@ -202,21 +273,40 @@ struct TileWorker {
     pixel: Vec<u32>,
     sample: Vec<u32>,
     radiance: Vec<[f32; 3]>,
+    /// The part of it that scattered at most once; empty unless layers are gathered, as is the next.
+    direct: Vec<[f32; 3]>,
+    first: Vec<FirstHit>,
 }
 
 impl TileWorker {
-    fn render(&mut self, ctx: &Context, accel: &dyn Accel, tile: &mut FilmTile, samples: std::ops::Range<u32>) {
+    fn render(
+        &mut self,
+        ctx: &Context,
+        accel: &dyn Accel,
+        tile: &mut FilmTile,
+        depth_unit: Option<DepthUnit>,
+        samples: Range<u32>,
+    ) {
         let per_queue = (QUEUE / tile.pixels.len().max(1)).clamp(1, QUEUE) as u32;
         let mut first = samples.start;
         while first < samples.end {
             let count = per_queue.min(samples.end - first);
             self.generate(ctx, tile, first, count);
+            if depth_unit.is_some() {
+                self.first.clear();
+                self.first.resize(self.pixel.len(), FirstHit::default());
+            }
             self.trace(ctx, accel, &mut tile.stats);
-            for ((rgb, &pixel), &sample) in self.radiance.iter().zip(&self.pixel).zip(&self.sample) {
+            for (path, (&rgb, (&pixel, &sample))) in
+                self.radiance.iter().zip(self.pixel.iter().zip(&self.sample)).enumerate()
+            {
                 let (x, y) = (pixel & 0xffff, pixel >> 16);
-                let at = (y - tile.y0) * tile.width + (x - tile.x0);
-                tile.pixels[at as usize].add(*rgb, pixel, sample);
-                tile.stats.note(*rgb, || LargeSample { value: 0.0, x, y, sample });
+                let at = ((y - tile.y0) * tile.width + (x - tile.x0)) as usize;
+                let counts = tile.pixels[at].add(rgb, pixel, sample);
+                if let Some(unit) = depth_unit.filter(|_| counts) {
+                    tile.layers[at].add(rgb, self.direct[path], &self.first[path], unit, (pixel, sample));
+                }
+                tile.stats.note(rgb, || LargeSample { value: 0.0, x, y, sample });
             }
             tile.stats.samples += self.radiance.len() as u64;
             first += count;
@@ -262,9 +352,11 @@ impl TileWorker {
         }
     }
 
-    /// The path loop: every path of the queue to its end.
+    /// The path loop: every path of the queue to its end. With layers, `direct` is a copy of the radiance from the moment
+    /// when the second hit's emission has arrived and its shadow rays have not.
     fn trace(&mut self, ctx: &Context, accel: &dyn Accel, stats: &mut TileStats) {
         let materials = &ctx.world.materials;
+        self.direct.clear();
         for depth in 0..=ctx.max_depth {
             if self.queue.rays.is_empty() {
                 break;
@@ -279,6 +371,7 @@ impl TileWorker {
             self.next.clear();
             self.shadow.clear();
             let mut gathered = Gathered(&mut self.radiance);
+            let first: &mut [FirstHit] = if depth == 0 { &mut self.first } else { &mut [] };
             if ctx.plan.environment {
                 for lanes in self.order.range(0, 1).chunks(F32x8::LANES) {
                     shade::miss(ctx, &Batch::new(lanes, &self.queue, &self.hits), &mut gathered);
@@ -290,13 +383,16 @@ impl TileWorker {
                 let to = from + materials[from..].iter().take_while(|m| m.variant == variant).count();
                 for lanes in self.order.range(1 + from, 1 + to).chunks(F32x8::LANES) {
                     let batch = Batch::new(lanes, &self.queue, &self.hits);
-                    let used = shade::hit(ctx, depth, &batch, &mut gathered, &mut self.shadow, &mut self.next);
+                    let used = shade::hit(ctx, depth, &batch, &mut gathered, first, &mut self.shadow, &mut self.next);
                     stats.closure_lanes += u64::from(used);
                     stats.closure_calls += u64::from(used > 0);
                 }
                 from = to;
             }
 
+            if depth == 1 && !self.first.is_empty() {
+                self.direct.extend_from_slice(gathered.0);
+            }
             self.shadow.close();
             self.blocked.resize(self.shadow.rays.len(), Mask8::first(0));
             accel.occluded(RayKind::Incoherent, &self.shadow.rays, None, &mut self.blocked);
@@ -307,6 +403,9 @@ impl TileWorker {
                 gathered.add(path, ray.mask & !*blocked, *light);
             }
             std::mem::swap(&mut self.queue, &mut self.next);
+        }
+        if self.direct.is_empty() && !self.first.is_empty() {
+            self.direct.extend_from_slice(&self.radiance); // no path came to a second hit
         }
     }
 }

@@ -4,6 +4,7 @@
 //! power heuristic on both sides; after the camera or a discrete event only scattering can reach it, with weight 1.
 //! Per vertex the order of additions is: emission, then the answer of the shadow ray.
 
+use crate::layers::FirstHit;
 use crate::light::power_heuristic;
 use crate::material::lane_surface;
 use crate::plan::Plan;
@@ -12,8 +13,10 @@ use crate::queue::{Batch, Paths, Queue, ShadowQueue};
 use crate::sampler::{Purpose, Sampler};
 use crate::world::{World, splat_rgb};
 use gonio_accel::Ray8;
+use gonio_kernel::lobe::Lobe;
+use gonio_kernel::surface::Weighted;
 use gonio_kernel::warp::{pdf_cosine_hemisphere, sample_cosine_hemisphere, sample_uniform_triangle};
-use gonio_kernel::{Closure, F32x8, Mask, Mask8, Real, Rgb, U32x8, Vec3, each_lane};
+use gonio_kernel::{Closure, F32x8, Mask, Mask8, Real, Rgb, Surface, U32x8, Vec3, each_lane};
 
 /// Shadow rays stop this much short of the light, relative to its distance: the rounding of the distance and of t.
 const SHORT_OF_LIGHT: f32 = 1.0 - 16.0 / 16_777_216.0;
@@ -93,13 +96,15 @@ pub(crate) fn miss(ctx: &Context, batch: &Batch, gathered: &mut Gathered) {
 }
 
 /// Paths that met materials of one variant: emission, light sample, scattering. `depth` counts the scattering events
-/// so far. Returns how many lanes a closure was evaluated for.
+/// so far. Returns how many lanes a closure was evaluated for. What the camera sees first goes into `first`, unless it is
+/// empty.
 #[inline(always)]
 pub(crate) fn hit(
     ctx: &Context,
     depth: u32,
     batch: &Batch,
     gathered: &mut Gathered,
+    first: &mut [FirstHit],
     shadow: &mut ShadowQueue,
     next: &mut Queue,
 ) -> u32 {
@@ -108,6 +113,19 @@ pub(crate) fn hit(
     let points = ShadingPoints::new(ctx.world, ctx.plan, batch, wo);
     if ctx.plan.area_lights {
         receive_emission(ctx, batch, &incoming, &points, gathered);
+    }
+    let materials = each_lane(|l| &ctx.world.materials[points.material[l] as usize]);
+    let alike = points.material.iter().all(|&m| m == points.material[0]);
+    let looked_up;
+    let surface = match &materials[0].surface {
+        Some(surface) if alike => surface,
+        _ => {
+            looked_up = lane_surface(materials.map(|m| &m.spec), &ctx.world.textures, points.uv);
+            &looked_up
+        }
+    };
+    if !first.is_empty() {
+        note_first_hit(ctx, batch, &incoming, &points, surface, first);
     }
     if depth >= ctx.max_depth {
         return 0;
@@ -126,16 +144,6 @@ pub(crate) fn hit(
         return 0;
     }
 
-    let materials = each_lane(|l| &ctx.world.materials[points.material[l] as usize]);
-    let alike = points.material.iter().all(|&m| m == points.material[0]);
-    let looked_up;
-    let surface = match &materials[0].surface {
-        Some(surface) if alike => surface,
-        _ => {
-            looked_up = lane_surface(materials.map(|m| &m.spec), &ctx.world.textures, points.uv);
-            &looked_up
-        }
-    };
     let closure = Closure::new(surface, points.frame.to_local(wo));
     let origin = points.point.off_plane(points.normal);
 
@@ -170,6 +178,29 @@ pub(crate) fn hit(
     }
     scatter(ctx, depth, live, &incoming, &points, &closure, origin, next);
     live.to_bits().count_ones()
+}
+
+/// What the layers want to know of the surfaces that the camera sees.
+#[inline(always)]
+fn note_first_hit(
+    ctx: &Context,
+    batch: &Batch,
+    incoming: &Incoming,
+    points: &ShadingPoints,
+    surface: &Surface<F32x8>,
+    first: &mut [FirstHit],
+) {
+    let along_normal = |sum: Rgb<F32x8>, l: &Weighted<F32x8>| sum + l.lobe.albedo_estimate(Vec3::unit_z()) * l.weight;
+    let albedo = surface.lobes().fold(Rgb::zero(), along_normal).map(|x| x.min(F32x8::ONE));
+    let depth = points.t * incoming.dir.dot(Vec3::broadcast(ctx.world.view.forward));
+    let lanes = |v: [F32x8; 3], l: usize| v.map(|x| x.lane(l));
+    for l in (0..F32x8::LANES).filter(|l| batch.live.to_bits() >> l & 1 != 0) {
+        first[incoming.path[l] as usize] = FirstHit {
+            albedo: lanes([albedo.r, albedo.g, albedo.b], l),
+            normal: lanes([points.frame.z.x, points.frame.z.y, points.frame.z.z], l),
+            depth: depth.lane(l),
+        };
+    }
 }
 
 /// Light that a hit triangle emits towards the path, from the front of its winding.

@@ -10,6 +10,8 @@ const KEPT: usize = 10;
 pub struct RenderStats {
     /// Wall time of the render alone \[s\].
     pub render_seconds: f64,
+    /// Samples per pixel: fewer than were asked for if the render was stopped.
+    pub spp: u32,
     /// Camera samples.
     pub samples: u64,
     /// Live lanes sent to the closest-hit query.
@@ -83,10 +85,18 @@ impl TileStats {
         other.largest.iter().for_each(|&s| self.keep(s));
     }
 
-    pub(crate) fn finish(self, render_seconds: f64, dropped: u64, film_hash: String, threads: usize) -> RenderStats {
+    pub(crate) fn finish(
+        self,
+        render_seconds: f64,
+        spp: u32,
+        dropped: u64,
+        film_hash: String,
+        threads: usize,
+    ) -> RenderStats {
         let slots = F32x8::LANES as f64 * self.closure_calls as f64;
         RenderStats {
             render_seconds,
+            spp,
             samples: self.samples,
             closest_rays: self.closest_rays,
             shadow_rays: self.shadow_rays,

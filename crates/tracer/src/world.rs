@@ -137,6 +137,12 @@ impl World {
         (self.offsets[instance as usize] + prim) as usize
     }
 
+    /// The largest distance of a corner from the camera's plane; at least 0.
+    pub(crate) fn farthest_depth(&self) -> f32 {
+        let depth = |corner: &Vec3<f32>| (*corner - self.view.origin).dot(self.view.forward);
+        self.triangles.iter().flat_map(|t| &t.corners).map(depth).fold(0.0, f32::max)
+    }
+
     /// Appends an instance's triangles and returns them as a mesh for casting.
     fn place(&mut self, instance: &Instance, mesh: &Mesh, center: DVec3, order: &[u32]) -> gonio_accel::Mesh {
         let to_world = instance.transform;

@@ -1,42 +1,121 @@
-//! The progress bar: samples per pixel, rate and remaining time, on a terminal; silence elsewhere.
+//! Progress on standard error: a bar for people, lines for logs, JSON for front-ends, or silence.
 
 use gonio_tracer::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
-use std::io::IsTerminal;
+use serde_json::json;
+use std::io::{IsTerminal, Write};
+use std::time::Instant;
 
-/// A progress bar on standard error, or nothing.
-pub(super) struct Bar(Option<ProgressBar>);
+/// How progress is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Mode {
+    /// A bar on a terminal, silence elsewhere
+    Auto,
+    /// A line per percent: `render 25% 16/64 spp 1.02 Msamples/s ETA 42 s`
+    Plain,
+    /// A JSON object per line, as often
+    Json,
+    /// Silence
+    None,
+}
 
-impl Bar {
-    /// A bar for so many samples per pixel.
-    pub(super) fn new(spp: u32) -> Self {
-        let terminal = std::io::stderr().is_terminal();
-        Self(terminal.then(|| {
-            let bar = ProgressBar::new(u64::from(spp));
-            if let Ok(style) = ProgressStyle::with_template("[{bar:32}] {pos}/{len} spp  {msg}") {
-                bar.set_style(style.progress_chars("=> "));
-            }
-            bar
-        }))
+/// A stage of the work that is being shown.
+pub(super) struct Report {
+    mode: Mode,
+    stage: &'static str,
+    start: Instant,
+    bar: Option<ProgressBar>,
+    /// The last percent that was printed.
+    percent: Option<u64>,
+}
+
+/// How far a stage has come, and how fast it goes.
+struct Step {
+    done: u64,
+    of: u64,
+    unit: &'static str,
+    rate: Option<f64>,
+    /// [s]
+    left: f64,
+}
+
+impl Report {
+    /// Shows nothing yet.
+    pub(super) fn new(mode: Mode) -> Self {
+        let silent = mode == Mode::Auto && !std::io::stderr().is_terminal();
+        let mode = if silent { Mode::None } else { mode };
+        Self { mode, stage: "", start: Instant::now(), bar: None, percent: None }
     }
 
-    /// Shows a finished pass.
-    pub(super) fn update(&mut self, progress: &Progress) {
-        let Some(bar) = &self.0 else { return };
-        let rate = progress.samples as f64 / progress.seconds.max(1e-9) / 1e6;
+    /// Shows a finished pass of the render.
+    pub(super) fn pass(&mut self, progress: &Progress) {
         let left = f64::from(progress.spp.saturating_sub(progress.spp_done));
-        let eta = progress.seconds * left / f64::from(progress.spp_done.max(1));
-        bar.set_message(format!("{rate:.2} Msamples/s  ETA {}", duration(eta)));
-        bar.set_position(u64::from(progress.spp_done));
+        let step = Step {
+            done: u64::from(progress.spp_done),
+            of: u64::from(progress.spp),
+            unit: "spp",
+            rate: Some(progress.samples as f64 / progress.seconds.max(1e-9) / 1e6),
+            left: progress.seconds * left / f64::from(progress.spp_done.max(1)),
+        };
+        self.show("render", &step);
     }
 
-    /// Leaves the line as it is.
-    pub(super) fn finish(self) {
-        if let Some(bar) = self.0 {
-            bar.abandon();
-            eprintln!(); // what comes next begins a line of its own
+    fn show(&mut self, stage: &'static str, step: &Step) {
+        if self.stage != stage {
+            self.finish();
+            (self.stage, self.start, self.percent) = (stage, Instant::now(), None);
+        }
+        let percent = step.done.saturating_mul(100).checked_div(step.of).unwrap_or(100);
+        let news = self.percent != Some(percent);
+        self.percent = Some(percent);
+        let Step { done, of, unit, .. } = *step;
+        let rate = step.rate.map_or_else(String::new, |rate| format!(" {rate:.2} Msamples/s"));
+        // Nobody is left to tell if standard error is gone.
+        match self.mode {
+            Mode::Plain if news => {
+                let _ = writeln!(
+                    std::io::stderr(),
+                    "{stage} {percent}% {done}/{of} {unit}{rate} ETA {}",
+                    duration(step.left)
+                );
+            }
+            Mode::Json if news => {
+                let line = json!({
+                    "stage": stage,
+                    "percent": percent,
+                    "done": done,
+                    "of": of,
+                    "unit": unit,
+                    "msamples_per_second": step.rate,
+                    "eta_seconds": step.left,
+                });
+                let _ = writeln!(std::io::stderr(), "{line}");
+            }
+            Mode::Auto => {
+                let bar = self.bar.get_or_insert_with(|| bar(stage, of, unit));
+                bar.set_message(format!("{rate}  ETA {}", duration(step.left)));
+                bar.set_length(of);
+                bar.set_position(done);
+            }
+            Mode::Plain | Mode::Json | Mode::None => {}
         }
     }
+
+    /// Leaves the line as it is, so that what comes next begins a line of its own.
+    pub(super) fn finish(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.abandon();
+            let _ = writeln!(std::io::stderr());
+        }
+    }
+}
+
+fn bar(stage: &str, of: u64, unit: &str) -> ProgressBar {
+    let bar = ProgressBar::new(of);
+    if let Ok(style) = ProgressStyle::with_template(&format!("{stage:8}[{{bar:32}}] {{pos}}/{{len}} {unit} {{msg}}")) {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar
 }
 
 /// `42 s`, `3:05 min` or `2:03 h`.

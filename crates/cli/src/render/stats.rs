@@ -1,6 +1,7 @@
 //! The statistics of a rendering, as JSON.
 
-use gonio_tracer::{Backend, RenderSettings, Rendering};
+use super::pictures::Origin;
+use gonio_tracer::Rendering;
 use serde_json::{Value, json};
 
 /// What the renderer cannot know.
@@ -12,7 +13,8 @@ pub(super) struct Times {
 }
 
 /// Everything that is known about a rendering. `x` and `y` are pixels of the whole picture, also with a crop.
-pub(super) fn stats(backend: Backend, settings: &RenderSettings, rendering: &Rendering, times: &Times) -> Value {
+pub(super) fn stats(origin: &Origin, rendering: &Rendering) -> Value {
+    let Origin { settings, times, backend, .. } = origin;
     let stats = &rendering.stats;
     let rate = if stats.render_seconds > 0.0 { stats.samples as f64 / stats.render_seconds / 1e6 } else { 0.0 };
     let largest: Vec<Value> = stats
@@ -36,7 +38,8 @@ pub(super) fn stats(backend: Backend, settings: &RenderSettings, rendering: &Ren
         "backend": backend.to_string(),
         "threads": stats.threads,
         "seed": settings.seed,
-        "spp": settings.spp,
+        "spp": stats.spp,
+        "spp_wanted": settings.spp,
         "width": rendering.picture.width,
         "height": rendering.picture.height,
         "max_depth": settings.max_depth,

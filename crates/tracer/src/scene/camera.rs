@@ -1,6 +1,6 @@
 //! The camera of a scene that has none, and the parts of it that a scene leaves open.
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 
 use super::Camera;
 
@@ -39,6 +39,33 @@ impl CameraSpec {
             return Err("\"up\" of the camera is parallel to the view direction".to_owned());
         }
         Ok(Camera { origin, target, up, vfov })
+    }
+}
+
+impl Camera {
+    /// World to camera, and world to normalized device coordinates, as OpenEXR defines both for row vectors: p·M, rows one
+    /// after the other. In camera space x points right, y up and z forward; in the plane of the picture (0, 0) is the upper
+    /// left corner and (1, 1) the lower right one, after division by w. `aspect` is width over height.
+    pub fn matrices(&self, aspect: f64) -> [[f32; 16]; 2] {
+        let forward = (self.target - self.origin).normalize();
+        let right = forward.cross(self.up).normalize();
+        let axes = [right, right.cross(forward), forward];
+        let mut world_to_camera = DMat4::IDENTITY; // as columns, for M·p
+        for (row, axis) in axes.into_iter().enumerate() {
+            for column in 0..3 {
+                world_to_camera.col_mut(column)[row] = axis[column];
+            }
+            world_to_camera.col_mut(3)[row] = -axis.dot(self.origin);
+        }
+        let (y, half) = (0.5 / (self.vfov.to_radians() * 0.5).tan(), 0.5);
+        let camera_to_picture = DMat4::from_cols_array_2d(&[
+            [y / aspect, 0.0, 0.0, 0.0],
+            [0.0, -y, 0.0, 0.0],
+            [half, half, 1.0, 1.0],
+            [0.0, 0.0, -1.0, 0.0], // so that it can be inverted
+        ]);
+        // Columns one after the other of M·p are the rows of p·M.
+        [world_to_camera, camera_to_picture * world_to_camera].map(|m| m.as_mat4().to_cols_array())
     }
 }
 
@@ -83,6 +110,25 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn matrices_put_the_target_in_the_middle_and_the_edge_at_the_edge() {
+        let (origin, target) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, 2.0, -1.0));
+        let camera = Camera { origin, target, up: DVec3::Y, vfov: 90.0 };
+        let [to_camera, to_picture] = camera.matrices(2.0);
+        // Row vectors: p·M.
+        let apply = |m: [f32; 16], p: DVec3| -> [f32; 4] {
+            let p = [p.x as f32, p.y as f32, p.z as f32, 1.0];
+            std::array::from_fn(|column| (0..4).map(|row| p[row] * m[row * 4 + column]).sum())
+        };
+        assert_eq!(apply(to_camera, target + DVec3::new(1.0, 2.0, 0.0)), [1.0, 2.0, 4.0, 1.0]);
+        let seen = |p| {
+            let [x, y, _, w] = apply(to_picture, p);
+            [x / w, y / w]
+        };
+        assert_eq!(seen(target), [0.5, 0.5]);
+        assert_eq!(seen(target + DVec3::new(-8.0, 4.0, 0.0)), [0.0, 0.0]); // 4 away, tan 45° = 1, twice as wide as high
     }
 
     #[test]

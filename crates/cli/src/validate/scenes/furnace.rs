@@ -7,6 +7,7 @@ use anyhow::{Context, Result};
 use gonio_tracer::scene::{Color, Model, Scene};
 use gonio_tracer::{Backend, Plan, RenderSettings, Rendering, World, render};
 use std::fmt;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 macro_rules! shipped {
@@ -131,7 +132,7 @@ impl Furnace {
         let mut settings = RenderSettings { spp, seed, threads: shot.threads, ..RenderSettings::of(scene, &world) };
         settings.russian_roulette = shot.roulette;
         settings.plan = shot.plan.unwrap_or(settings.plan);
-        Ok(render(&world, &*accel, &settings, &mut |_| ()))
+        Ok(render(&world, &*accel, &settings, &mut |_| ControlFlow::Continue(())))
     }
 
     /// The radiance of every pixel.
