@@ -71,7 +71,7 @@ fn rows(csv: &str) -> Vec<Vec<&str>> {
 fn help_and_version_are_no_errors() {
     let folder = folder();
     assert_eq!(gonio(folder.path(), "--version").succeeds(), format!("gonio {}\n", env!("CARGO_PKG_VERSION")));
-    for command in ["", "render", "bsdf", "bsdf eval", "bsdf sample", "bsdf albedo", "validate"] {
+    for command in ["", "render", "compare", "bsdf", "bsdf eval", "bsdf sample", "bsdf albedo", "validate"] {
         let help = gonio(folder.path(), &format!("{command} --help")).succeeds();
         assert!(help.contains("Usage: gonio"), "{help}");
     }
@@ -187,6 +187,36 @@ fn a_render_writes_pictures_and_statistics_in_silence() {
     let largest = stats["largest_samples"].as_array().unwrap();
     assert!(!largest.is_empty() && largest.len() <= 10);
     assert!(largest[0]["value"].as_f64().unwrap() > 0.0 && largest[0]["x"].as_u64().unwrap() < 8);
+}
+
+#[test]
+fn pictures_are_compared_by_what_chance_can_explain() {
+    let folder = folder();
+    let render = |name: &str, more: &str| {
+        let box_ = scene("cornell-box.toml");
+        gonio(folder.path(), &format!("render {box_} --size 32x32 --spp 64 -o {name} {more}")).succeeds();
+    };
+    render("a.exr", "--seed 1");
+    render("b.exr", "--seed 2");
+    render("dark.exr", "--seed 2 --max-depth 2");
+    render("other.png", "");
+    let compared = |arguments: &str| -> Value {
+        serde_json::from_str(&gonio(folder.path(), &format!("compare --json {arguments}")).succeeds()).unwrap()
+    };
+    let same = compared("a.exr a.exr");
+    assert_eq!((same["differing_pixels"].as_u64(), same["rmse"][0].as_f64()), (Some(0), Some(0.0)));
+    let noise = compared("a.exr b.exr -o d.png");
+    assert_eq!(noise["block_test"]["explained_by_chance"], true, "{noise}");
+    assert!(noise["differing_pixels"].as_u64().unwrap() > 500 && noise["rel_mse"][1].as_f64().unwrap() > 0.0);
+    assert_eq!(&fs::read(folder.path().join("d.png")).unwrap()[..4], *b"\x89PNG");
+    gonio(folder.path(), "compare a.exr b.exr --test -o d.exr").succeeds();
+    gonio(folder.path(), "compare a.exr dark.exr").succeeds();
+    gonio(folder.path(), "compare a.exr dark.exr --test").fails(3, "");
+    gonio(folder.path(), "compare a.exr other.png --significance 2").fails(2, "between 0 and 1");
+    gonio(folder.path(), "compare a.exr other.png -o d.gif").fails(2, "written as .exr or .png");
+    gonio(folder.path(), "compare a.exr in.csv").fails(1, "in.csv: cannot be");
+    gonio(folder.path(), &format!("render {} --size 8x8 --spp 1 -o small.png", scene("cornell-box.toml"))).succeeds();
+    gonio(folder.path(), "compare a.exr small.png").fails(2, "32 x 32 pixels, but small.png has 8 x 8");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The tests that cross crates: one binary, one module per theme.
 
 mod backends; // Every backend finds the hit that brute finds, and nothing leaks.
+mod behaviour; // Signals, full disks, folders that cannot be written to: the promised exit code and no half file.
 mod command_line; // What a user types: exit codes, error sentences, files.
 mod instruments; // Each instrument passes the kernel and catches its planted faults.
 mod mitsuba; // The Cornell box is the picture that Mitsuba 3 makes.

@@ -1,4 +1,4 @@
-//! The command line of Gonio: `gonio render`, `gonio bsdf` and `gonio validate`.
+//! The command line of Gonio: `gonio render`, `compare`, `bsdf` and `validate`.
 //!
 //! One file per subcommand, and no physics: scenes and pictures belong to `gonio-tracer`, scattering to `gonio-kernel`,
 //! its instruments to `gonio-lab`. What is here reads arguments, hands them on, and writes what comes back.
@@ -9,11 +9,13 @@
 #![forbid(unsafe_code)]
 
 mod bsdf;
+mod compare;
 mod cpu;
 mod output;
 mod random;
 mod render;
 mod signals;
+mod statistics;
 mod usage;
 mod validate;
 
@@ -38,6 +40,7 @@ struct Cli {
 enum Command {
     Render(render::Args),
     Bsdf(bsdf::Args),
+    Compare(compare::Args),
     Validate(validate::Args),
 }
 
@@ -58,6 +61,7 @@ pub fn run() -> ExitCode {
     let result = match cli.command {
         Command::Render(args) => render::run(&args),
         Command::Bsdf(args) => bsdf::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Validate(args) => validate::run(&args),
     };
     result.unwrap_or_else(|error| {

@@ -10,7 +10,6 @@ mod grade;
 mod html;
 mod report;
 mod scenes;
-mod statistics;
 mod table;
 
 use crate::output::{Target, write_text};

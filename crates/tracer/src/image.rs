@@ -11,6 +11,7 @@ use ::exr::meta::attribute::{Chromaticities, IntegerBounds};
 use ::exr::prelude::{self as exr, ReadChannels, ReadLayers, WritableImage};
 
 use crate::layers::Layers;
+use crate::texture::SRGB_TO_LINEAR;
 use crate::whole_file::WholeFile;
 
 /// A picture in linear Rec. 709, rows from the top.
@@ -242,6 +243,25 @@ fn encode_srgb(linear: f32) -> u8 {
     let x = if linear > 0.0 { linear.min(1.0) } else { 0.0 }; // NaN > 0 is false: black
     let encoded = if x <= 0.003_130_8 { x * 12.92 } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
     (encoded * 255.0 + 0.5) as u8
+}
+
+/// Reads a picture: OpenEXR as [`read_exr`] does, anything else as 8-bit sRGB (PNG, JPEG), whose alpha is left out.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn read_picture(path: &Path) -> Result<Picture, ImageError> {
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
+        return read_exr(path);
+    }
+    let decoded = image::ImageReader::open(path)
+        .and_then(image::ImageReader::with_guessed_format)
+        .map_err(|error| failure(path, format!("cannot be read: {error}")))?
+        .decode()
+        .map_err(|error| failure(path, format!("cannot be decoded: {error}")))?
+        .into_rgb8();
+    let (width, height) = decoded.dimensions();
+    let rgb = decoded.pixels().map(|p| p.0.map(|byte| SRGB_TO_LINEAR[usize::from(byte)])).collect();
+    Ok(Picture { width, height, rgb })
 }
 
 /// Reads the first layer that has channels R, G and B, as f32.

@@ -4,7 +4,7 @@
 //! reflection, radiance is the same everywhere: L·(1 + a + a² + …). With max_depth d the sum ends with aᵈ, so the answer is
 //! L·(1 − a^(d+1))/(1 − a) exactly. A white convex object under a uniform sky vanishes, and a grey one shows the sky times
 //! its albedo, because no light comes back to it. Every block of pixels is tested against that number (see
-//! [`super::statistics`]).
+//! [`crate::statistics`]).
 //!
 //! **scene-hash.** Backend, number of threads and the pruning of the plan never change a bit of the film.
 //!
@@ -12,8 +12,8 @@
 
 mod furnace;
 
-use super::statistics::{level, tests, worst_block};
 use super::{SIGNIFICANCE, wanted};
+use crate::statistics::{Worst, level, tests, worst_block};
 use anyhow::{Context, Result};
 use furnace::{FURNACES, Furnace, Shot};
 use gonio_lab::{Check, Effort, Options, Outcome};
@@ -104,14 +104,7 @@ fn measure(
     exhibit(furnace, &scene, &picture, out)
 }
 
-fn p_value(
-    furnace: &Furnace,
-    shot: &Shot,
-    worst: &super::statistics::Worst,
-    level: f64,
-    spp: u32,
-    start: Instant,
-) -> Check {
+fn p_value(furnace: &Furnace, shot: &Shot, worst: &Worst, level: f64, spp: u32, start: Instant) -> Check {
     Check {
         instrument: "scene-furnace".to_owned(),
         subject: format!("{}, {shot}", furnace.name),

@@ -1,8 +1,9 @@
-//! The test of a furnace picture: every block of pixels, and the picture as a whole, against a known mean.
+//! The block test: every block of pixels, and the picture as a whole, against a known mean.
 //!
-//! All pixels of a furnace picture have the same expectation, and their means over many samples are independent and nearly
-//! normal. So the mean of a block is compared with the answer by Student's t, its error estimated from the spread of its
-//! own pixels. The blocks find a fault in one corner, the whole finds a small one everywhere.
+//! The pixels of a furnace picture all have the same expectation; so have the differences of two pictures of one scene,
+//! which is zero. Means over many samples are independent from pixel to pixel and nearly normal. So the mean of a block is
+//! compared with what is expected by Student's t, its error estimated from the spread of its own pixels. The blocks find a
+//! fault in one corner, the whole finds a small one everywhere.
 
 use gonio_tracer::image::Picture;
 use statrs::function::beta::beta_reg;
@@ -11,45 +12,72 @@ use statrs::function::beta::beta_reg;
 const BLOCK: u32 = 8;
 
 /// The level of each of n tests that together fail by chance with probability `family` at most (Šidák).
-pub(super) fn level(family: f64, tests: usize) -> f64 {
+pub(crate) fn level(family: f64, tests: usize) -> f64 {
     // 1 − (1 − s)^(1/n) without cancellation.
     -((-family).ln_1p() / tests.max(1) as f64).exp_m1()
 }
 
 /// How many tests [`worst_block`] makes of a picture: three channels of each block and of the whole.
-pub(super) fn tests(width: u32, height: u32) -> usize {
+pub(crate) fn tests(width: u32, height: u32) -> usize {
     3 * ((width.div_ceil(BLOCK) * height.div_ceil(BLOCK)) as usize + 1)
 }
 
 /// The smallest p-value of a picture, and where it was found.
 #[derive(Clone, Debug)]
-pub(super) struct Worst {
-    pub(super) p: f64,
-    pub(super) place: String,
+pub(crate) struct Worst {
+    pub(crate) p: f64,
+    pub(crate) place: String,
 }
 
-/// Compares a picture with the radiance that all its pixels should have. `slack` is the relative difference that is
+/// One test: the mean of one channel over an area.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tested {
+    /// First and one past the last column, first and one past the last row.
+    pub(crate) area: [u32; 4],
+    pub(crate) channel: usize,
+    pub(crate) mean: f64,
+    /// Standard error of the mean.
+    pub(crate) error: f64,
+    pub(crate) p: f64,
+}
+
+/// Tests the whole picture and then each block, by channel. `slack` is the relative difference from what is expected that is
 /// rounding and not chance.
-pub(super) fn worst_block(picture: &Picture, expected: [f64; 3], slack: f64) -> Worst {
-    let mut worst = Worst { p: 1.0, place: String::new() };
+pub(crate) fn test_blocks(picture: &Picture, expected: [f64; 3], slack: f64) -> impl Iterator<Item = Tested> {
     let whole = [0, picture.width, 0, picture.height];
     let columns = (0..picture.width).step_by(BLOCK as usize);
     let blocks = columns.flat_map(|x| (0..picture.height).step_by(BLOCK as usize).map(move |y| [x, y]));
     let blocks = blocks.map(|[x, y]| [x, (x + BLOCK).min(picture.width), y, (y + BLOCK).min(picture.height)]);
-    for area in std::iter::once(whole).chain(blocks) {
-        for (channel, (&expected, name)) in expected.iter().zip(["red", "green", "blue"]).enumerate() {
+    std::iter::once(whole).chain(blocks).flat_map(move |area| {
+        [0, 1, 2].map(|channel| {
             let [mean, error, n] = mean_and_error(picture, area, channel);
-            let p = student_p((mean - expected).abs() - slack * expected, error, n - 1.0);
-            if p < worst.p || worst.place.is_empty() {
-                let [x0, x1, y0, y1] = area;
-                let place =
-                    if area == whole { "whole picture".to_owned() } else { format!("pixels {x0}..{x1} x {y0}..{y1}") };
-                worst =
-                    Worst { p, place: format!("{place}, {name}: {mean:.6} ± {error:.1e}, should be {expected:.6}") };
-            }
+            let deviation = (mean - expected[channel]).abs() - slack * expected[channel];
+            Tested { area, channel, mean, error, p: student_p(deviation, error, n - 1.0) }
+        })
+    })
+}
+
+/// Compares a picture with the radiance that all its pixels should have.
+pub(crate) fn worst_block(picture: &Picture, expected: [f64; 3], slack: f64) -> Worst {
+    let all = test_blocks(picture, expected, slack);
+    // The first of equals: the whole picture.
+    let worst = all.reduce(|a, b| if b.p < a.p { b } else { a }).expect("a picture has pixels");
+    let Tested { channel, mean, error, p, .. } = worst;
+    let (place, expected) = (worst.place(picture), expected[channel]);
+    Worst { p, place: format!("{place}: {mean:.6} ± {error:.1e}, should be {expected:.6}") }
+}
+
+impl Tested {
+    /// Where it is, in words.
+    pub(crate) fn place(&self, picture: &Picture) -> String {
+        let [x0, x1, y0, y1] = self.area;
+        let channel = ["red", "green", "blue"][self.channel];
+        if [x0, y0] == [0, 0] && [x1, y1] == [picture.width, picture.height] {
+            format!("whole picture, {channel}")
+        } else {
+            format!("pixels {x0}..{x1} x {y0}..{y1}, {channel}")
         }
     }
-    worst
 }
 
 fn mean_and_error(picture: &Picture, [x0, x1, y0, y1]: [u32; 4], channel: usize) -> [f64; 3] {

@@ -1,0 +1,173 @@
+//! What is measured of a difference.
+
+use crate::statistics::{level, test_blocks, tests};
+use gonio_tracer::image::Picture;
+
+/// Keeps relMSE finite where the reference is black (Rousselle et al. 2011).
+const EPSILON: f64 = 0.01;
+/// Mid grey: 0.5 in sRGB.
+const MID_GREY: f64 = 0.214;
+
+/// How B differs from A, by channel.
+pub(super) struct Difference {
+    /// B − A.
+    pub(super) picture: Picture,
+    /// Of A, and of B.
+    pub(super) means: [[f64; 3]; 2],
+    pub(super) rmse: [f64; 3],
+    /// Mean of (B − A)²/(A² + ε).
+    pub(super) rel_mse: [f64; 3],
+    /// Pixels with any difference, and those of them all of whose eight neighbours are equal.
+    pub(super) differing: usize,
+    pub(super) isolated: usize,
+    /// Pixels of either picture with a channel that is not finite.
+    pub(super) not_numbers: usize,
+    pub(super) largest: Largest,
+    /// The block test: how many tests, how many failed at which level, and the worst.
+    pub(super) tests: usize,
+    pub(super) failed: usize,
+    pub(super) level: f64,
+    pub(super) worst_p: f64,
+    pub(super) worst_place: String,
+}
+
+/// The largest difference of any channel, and its pixel.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Largest {
+    pub(super) value: f64,
+    pub(super) x: usize,
+    pub(super) y: usize,
+}
+
+impl Difference {
+    pub(super) fn explained_by_chance(&self) -> bool {
+        self.failed == 0
+    }
+}
+
+/// Measures how B differs from A, which has the same size.
+pub(super) fn difference(a: &Picture, b: &Picture, significance: f64) -> Difference {
+    let n = a.rgb.len() as f64;
+    let pairs = || a.rgb.iter().zip(&b.rgb);
+    let mean_of = |value: &dyn Fn(f64, f64) -> f64| {
+        [0, 1, 2].map(|c| pairs().map(|(a, b)| value(f64::from(a[c]), f64::from(b[c]))).sum::<f64>() / n)
+    };
+    let rgb = pairs().map(|(a, b)| [b[0] - a[0], b[1] - a[1], b[2] - a[2]]).collect();
+    let picture = Picture { width: a.width, height: a.height, rgb };
+    let differs: Vec<bool> = pairs().map(|(a, b)| a.map(f32::to_bits) != b.map(f32::to_bits)).collect();
+    let width = a.width as usize;
+
+    let tests = tests(a.width, a.height);
+    let level = level(significance, tests);
+    let (mut failed, mut worst_p, mut worst_place) = (0, f64::INFINITY, String::new());
+    for tested in test_blocks(&picture, [0.0; 3], 0.0) {
+        failed += usize::from(tested.p < level);
+        if tested.p < worst_p {
+            worst_p = tested.p;
+            worst_place = format!("{}: {:.3e} ± {:.1e}", tested.place(a), tested.mean, tested.error);
+        }
+    }
+    let mut largest = Largest::default();
+    for (i, rgb) in picture.rgb.iter().enumerate() {
+        let value = rgb.iter().map(|x| f64::from(x.abs())).fold(0.0, f64::max);
+        if value > largest.value {
+            largest = Largest { value, x: i % width, y: i / width };
+        }
+    }
+    Difference {
+        means: [mean_of(&|a, _| a), mean_of(&|_, b| b)],
+        rmse: mean_of(&|a, b| (b - a) * (b - a)).map(f64::sqrt),
+        rel_mse: mean_of(&|a, b| (b - a) * (b - a) / (a * a + EPSILON)),
+        differing: differs.iter().filter(|d| **d).count(),
+        isolated: isolated(&differs, width),
+        not_numbers: pairs().filter(|(a, b)| !a.iter().chain(*b).all(|x| x.is_finite())).count(),
+        largest,
+        tests,
+        failed,
+        level,
+        worst_p,
+        worst_place,
+        picture,
+    }
+}
+
+/// How many marked pixels have no marked neighbour.
+fn isolated(marked: &[bool], width: usize) -> usize {
+    let height = marked.len() / width;
+    let alone = |x: usize, y: usize| {
+        let columns = x.saturating_sub(1)..(x + 2).min(width);
+        let around = columns.flat_map(|i| (y.saturating_sub(1)..(y + 2).min(height)).map(move |j| (i, j)));
+        around.filter(|&(i, j)| marked[j * width + i]).count() == 1
+    };
+    (0..marked.len()).filter(|&i| marked[i] && alone(i % width, i / width)).count()
+}
+
+/// The difference relative to the mean of A, magnified so that all but the largest percent fits between black and twice mid
+/// grey, and by how much.
+pub(super) fn magnified(a: &Picture, difference: &Picture) -> (Picture, f64) {
+    let mean = a.rgb.iter().flatten().map(|&x| f64::from(x)).filter(|x| x.is_finite()).sum::<f64>();
+    let mean = (mean / (3 * a.rgb.len()) as f64).abs().max(f64::MIN_POSITIVE);
+    let mut sizes: Vec<f32> = difference.rgb.iter().flatten().map(|x| x.abs()).filter(|x| x.is_finite()).collect();
+    sizes.sort_unstable_by(f32::total_cmp);
+    let most = sizes.get(sizes.len().saturating_sub(1 + sizes.len() / 100)).map_or(0.0, |&x| f64::from(x));
+    let most = if most > 0.0 { most } else { sizes.last().map_or(0.0, |&x| f64::from(x)) };
+    let gain = if most > 0.0 { mean / most } else { 1.0 };
+    let show = |x: f32| (MID_GREY * (1.0 + gain * f64::from(x) / mean)) as f32;
+    (Picture { rgb: difference.rgb.iter().map(|rgb| rgb.map(show)).collect(), ..*difference }, gain)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::unit;
+
+    fn noisy(seed: u64) -> Picture {
+        let pixel = |i: u64| [0, 1, 2].map(|c| (1.0 + 0.2 * (unit(seed, i, c) - 0.5)) as f32);
+        Picture { width: 40, height: 24, rgb: (0..960).map(pixel).collect() }
+    }
+
+    #[test]
+    fn noise_is_chance_and_a_tint_of_one_block_is_not() {
+        let (a, mut b) = (noisy(1), noisy(2));
+        assert!(difference(&a, &b, 0.01).explained_by_chance());
+        for y in 8..16 {
+            for x in 16..24 {
+                b.rgb[y * 40 + x][1] *= 1.1;
+            }
+        }
+        let found = difference(&a, &b, 0.01);
+        assert!(!found.explained_by_chance());
+        assert!(found.worst_place.starts_with("pixels 16..24 x 8..16, green"), "{}", found.worst_place);
+    }
+
+    #[test]
+    fn the_errors_are_what_they_are_called() {
+        let flat = |x: f32| Picture { width: 8, height: 8, rgb: vec![[x, 0.0, 2.0]; 64] };
+        let found = difference(&flat(1.0), &flat(1.5), 0.01);
+        assert_eq!((found.means[0][0], found.means[1][0]), (1.0, 1.5));
+        assert_eq!((found.rmse, found.differing, found.isolated), ([0.5, 0.0, 0.0], 64, 0));
+        assert!((found.rel_mse[0] - 0.25 / 1.01).abs() < 1e-12);
+        assert_eq!(found.worst_p, 0.0); // a constant offset has no spread that could explain it
+    }
+
+    #[test]
+    fn lonely_pixels_are_counted() {
+        let a = noisy(1);
+        let mut b = a.clone();
+        for at in [0, 5 * 40 + 5, 5 * 40 + 6, 20 * 40 + 39] {
+            b.rgb[at][2] += 0.5;
+        }
+        b.rgb[300][0] = f32::NAN;
+        let found = difference(&a, &b, 0.01);
+        assert_eq!((found.differing, found.isolated, found.not_numbers), (5, 3, 1));
+        assert!(!found.explained_by_chance(), "a pixel that is not a number is never chance");
+        assert_eq!((found.largest.x, found.largest.y), (0, 0));
+    }
+
+    #[test]
+    fn magnifying_keeps_grey_where_nothing_differs() {
+        let a = noisy(1);
+        let (picture, _) = magnified(&a, &difference(&a, &a, 0.01).picture);
+        assert!(picture.rgb.iter().flatten().all(|x| (x - 0.214).abs() < 1e-6));
+    }
+}
