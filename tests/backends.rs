@@ -1,7 +1,7 @@
 //! Every backend finds the hit that brute finds, to the last bit, and nothing leaks through closed surfaces.
 
 use crate::support::{Random, geometry, grid, side_by_side, soup, sphere};
-use gonio_accel::{Accel, Brute, Geometry, GeometryError, Hit, Hit8, Mesh, Obvhs, Opacity, Ray8, RayKind};
+use gonio_accel::{Accel, Brute, Geometry, GeometryError, Hit, Hit8, Intersect, Mesh, Obvhs, Opacity, Ray8, RayKind};
 use gonio_kernel::{F32x8, Mask8, Vec3};
 
 /// The hits of one packet, misses as `None`.
@@ -95,7 +95,11 @@ fn small_geometries() -> Vec<(&'static str, Geometry)> {
 fn lists_and_trees_agree_with_brute_to_the_last_bit() {
     for (name, geometry) in small_geometries() {
         let rays = telling_rays(&geometry, 60_000, &mut Random(5));
-        let (brute, obvhs, tree) = (Brute::new(&geometry), Obvhs::new(&geometry), Obvhs::always_tree(&geometry));
+        let (brute, obvhs, tree) = (
+            Brute::new(&geometry),
+            Obvhs::new(&geometry, Intersect::Robust),
+            Obvhs::always_tree(&geometry, Intersect::Robust),
+        );
         let expected = hits(&brute, &rays);
         for accel in [&obvhs, &tree] {
             for (i, (a, b)) in expected.iter().zip(hits(accel, &rays)).enumerate() {
@@ -134,7 +138,7 @@ fn nothing_leaks_through_a_closed_sphere() {
             Ray8::new(side_by_side(lanes.map(|l| l.0)), side_by_side(lanes.map(|l| l.1)))
         })
         .collect();
-    let leaks = hits(&Obvhs::new(&geometry), &rays).iter().filter(|h| h.is_none()).count();
+    let leaks = hits(&Obvhs::new(&geometry, Intersect::Robust), &rays).iter().filter(|h| h.is_none()).count();
     assert_eq!(leaks, 0, "of {} rays aimed at edges and vertices", rays.len() * 8);
 }
 
@@ -152,7 +156,7 @@ fn vertical_rays_on_the_edges_of_a_flat_grid_all_hit() {
             Ray8::new(side_by_side(origin), side_by_side([Vec3::new(-0.0, 0.0, dz); 8]))
         })
         .collect();
-    for accel in [&Brute::new(&geometry) as &dyn Accel, &Obvhs::new(&geometry)] {
+    for accel in [&Brute::new(&geometry) as &dyn Accel, &Obvhs::new(&geometry, Intersect::Robust)] {
         assert_eq!(hits(accel, &rays).iter().filter(|h| h.is_none()).count(), 0);
     }
 }
@@ -169,7 +173,7 @@ fn an_opacity_filter_lets_light_through_chosen_triangles() {
     for mesh in [sphere(5, [0.0; 3]), sphere(20, [0.0; 3])] {
         let geometry = geometry(mesh);
         let rays = telling_rays(&geometry, 800, &mut Random(9));
-        let (brute, obvhs) = (Brute::new(&geometry), Obvhs::new(&geometry));
+        let (brute, obvhs) = (Brute::new(&geometry), Obvhs::new(&geometry, Intersect::Robust));
         for parity in [0, 1] {
             let expected = blocked(&brute, &rays, Some(&Only(parity)));
             assert_eq!(expected, blocked(&obvhs, &rays, Some(&Only(parity))));
@@ -182,7 +186,11 @@ fn an_opacity_filter_lets_light_through_chosen_triangles() {
 fn an_empty_geometry_is_a_miss() {
     let geometry = Geometry::new(Vec::new(), Vec::new()).unwrap();
     let ray = Ray8::new(side_by_side([Vec3::new(0.0, 0.0, 0.0); 8]), side_by_side([Vec3::new(0.0, 0.0, 1.0); 8]));
-    for accel in [&Brute::new(&geometry) as &dyn Accel, &Obvhs::new(&geometry), &Obvhs::always_tree(&geometry)] {
+    for accel in [
+        &Brute::new(&geometry) as &dyn Accel,
+        &Obvhs::new(&geometry, Intersect::Robust),
+        &Obvhs::always_tree(&geometry, Intersect::Robust),
+    ] {
         assert!(hits(accel, &[ray]).iter().all(Option::is_none));
     }
 }
@@ -208,7 +216,7 @@ fn a_long_tail_of_shrinking_triangles_does_not_overflow_the_stack() {
     let geometry = geometry(mesh);
     let rays = telling_rays(&geometry, 8_000, &mut Random(2));
     let expected = hits(&Brute::new(&geometry), &rays);
-    for (i, (a, b)) in expected.iter().zip(hits(&Obvhs::always_tree(&geometry), &rays)).enumerate() {
+    for (i, (a, b)) in expected.iter().zip(hits(&Obvhs::always_tree(&geometry, Intersect::Robust), &rays)).enumerate() {
         assert_eq!(bits(a), bits(&b), "lane {} of {:?}", i % 8, rays[i / 8]);
     }
 }

@@ -86,6 +86,7 @@ fn wrong_usage_is_exit_code_2_and_says_what_would_be_right() {
         ("paint", "unrecognized subcommand 'paint'"),
         ("render scene.toml", "--output"),
         ("render scene.toml -o a.exr --backend fast", "obvhs"),
+        ("render scene.toml -o a.exr --backend brute --fast-intersect", "always robust"),
         ("render scene.toml -o a.jpg", "pictures are written as .exr or .png"),
         ("render scene.toml -o a.exr --spp 0", "0 is not in"),
         ("render scene.toml -o a.exr --crop 4,4,4,8", "X0 < X1"),
@@ -184,6 +185,7 @@ fn a_render_writes_pictures_and_statistics_in_silence() {
         assert!(!stats[name].as_str().unwrap().is_empty(), "{name}");
     }
     assert_eq!(stats["backend"], "brute");
+    assert_eq!(stats["intersect"], "robust");
     let largest = stats["largest_samples"].as_array().unwrap();
     assert!(!largest.is_empty() && largest.len() <= 10);
     assert!(largest[0]["value"].as_f64().unwrap() > 0.0 && largest[0]["x"].as_u64().unwrap() < 8);

@@ -6,6 +6,7 @@
 //! silhouette pixels, where pixel filters and edge rules show, are counted apart.
 
 use crate::support::{cornell_box, repository};
+use gonio_accel::Intersect;
 use gonio_tracer::{Backend, RenderSettings, World, render};
 use serde::Deserialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -54,7 +55,7 @@ fn the_cornell_box_agrees_with_mitsuba() {
     let reference: Reference = serde_json::from_str(&text).expect("the reference is JSON");
     let scene = cornell_box(reference.width, 16);
     let world = World::new(&scene).expect("the shipped scene is sound");
-    let accel = Backend::Obvhs.build(world.geometry());
+    let accel = Backend::Obvhs.build(world.geometry(), Intersect::Robust).expect("obvhs needs nothing");
     let (size, block) = (reference.width as usize, reference.block);
     let per_row = size / block;
 

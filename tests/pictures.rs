@@ -2,6 +2,7 @@
 
 use crate::support::cornell_box;
 use glam::{DAffine3, DVec3};
+use gonio_accel::Intersect;
 use gonio_kernel::Rgb;
 use gonio_tracer::scene::{Color, FresnelSpec, LobeSpec, Model, Scene};
 use gonio_tracer::{Backend, Crop, Plan, RenderSettings, Rendering, World, render};
@@ -11,7 +12,8 @@ fn rendered(scene: &Scene, backend: Backend, change: impl Fn(&mut RenderSettings
     let world = World::new(scene).expect("the scene is sound");
     let mut settings = RenderSettings::of(scene, &world);
     change(&mut settings);
-    render(&world, &*backend.build(world.geometry()), &settings, &mut |_| ControlFlow::Continue(()))
+    let accel = backend.build(world.geometry(), Intersect::Robust).expect("the backend builds");
+    render(&world, &*accel, &settings, &mut |_| ControlFlow::Continue(()))
 }
 
 fn mean(rendering: &Rendering) -> [f64; 3] {

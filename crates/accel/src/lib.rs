@@ -34,6 +34,7 @@ pub use brute::Brute;
 pub use geometry::{Geometry, GeometryError, Instance, Mesh, TriangleId, WorldTriangle};
 pub use obvhs::Obvhs;
 pub use ray::{Hit, Hit8, NO_HIT, Opacity, Ray8, RayKind};
+pub use triangle::Intersect;
 
 use gonio_kernel::Mask8;
 

@@ -11,7 +11,7 @@ use crate::Accel;
 use crate::brute::scalar_hit;
 use crate::geometry::Geometry;
 use crate::ray::{Hit, Hit8, NO_HIT, Opacity, Ray8, RayKind};
-use crate::triangle::{Beam, intersect};
+use crate::triangle::{Beam, Intersect, intersect};
 use few::Few;
 use gonio_kernel::{F32x8, Mask8, Real, U32x8, Vec3};
 use tree::{Child, Node, Tree};
@@ -24,13 +24,13 @@ pub struct Obvhs {
 }
 
 impl Obvhs {
-    /// Builds the tree: deterministic, O(n log n).
-    pub fn new(geometry: &Geometry) -> Self {
-        Self { few: Few::of(geometry), ..Self::always_tree(geometry) }
+    /// Builds the tree: deterministic, O(n log n). Its one test is watertight, whatever is asked for.
+    pub fn new(geometry: &Geometry, intersect: Intersect) -> Self {
+        Self { few: Few::of(geometry), ..Self::always_tree(geometry, intersect) }
     }
 
     /// Builds a tree even where a list would be faster: for tests of the tree.
-    pub fn always_tree(geometry: &Geometry) -> Self {
+    pub fn always_tree(geometry: &Geometry, _intersect: Intersect) -> Self {
         Self { tree: Tree::build(geometry), few: None }
     }
 }

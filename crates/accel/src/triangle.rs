@@ -20,6 +20,28 @@
 
 use gonio_kernel::frame::tangents;
 use gonio_kernel::{F32x8, Mask8, Real, Vec3};
+use std::fmt;
+
+/// How strictly rays are tested against triangles. What a backend makes of it is in its documentation; `Brute` is always
+/// robust, because it is what the others are measured against.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Intersect {
+    /// Watertight: no ray falls between triangles that share an edge, wherever it is aimed.
+    #[default]
+    Robust,
+    /// As many rays as possible per second: a ray aimed at a shared edge or vertex may fall through. Elsewhere the same hits
+    /// up to rounding.
+    Fast,
+}
+
+impl fmt::Display for Intersect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Robust => "robust",
+            Self::Fast => "fast",
+        })
+    }
+}
 
 /// Unit roundoff of `f32`.
 const U: f32 = 1.0 / 16_777_216.0;

@@ -8,6 +8,7 @@ use crate::output::{Output, Target, probe, write_text};
 use crate::signals;
 use crate::usage::{Usage, several, warn};
 use anyhow::Result;
+use gonio_accel::Intersect;
 use gonio_tracer::scene::Scene;
 use gonio_tracer::{Backend, Crop, RenderSettings, World};
 use pictures::{Origin, extension, is_picture};
@@ -44,6 +45,9 @@ pub(crate) struct Args {
     /// Ray-casting backend
     #[arg(long, value_name = "NAME", default_value = "obvhs", value_parser = backend, help = backend_help())]
     backend: Backend,
+    /// Test triangles faster; a ray aimed exactly at an edge between two may fall through
+    #[arg(long)]
+    fast_intersect: bool,
     /// Number of scattering events after which a path ends, instead of the scene's
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1024))]
     max_depth: Option<u32>,
@@ -72,6 +76,9 @@ pub(crate) struct Args {
 
 /// Runs the subcommand.
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    if args.fast_intersect && args.backend == Backend::Brute {
+        return Err(Usage("--fast-intersect: the backend brute is always robust".to_owned()).into());
+    }
     check_outputs(args)?;
     let start = Instant::now();
     let mut scene = Scene::load(&args.scene)?;
@@ -90,12 +97,19 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
 
     let start = Instant::now();
-    let accel = args.backend.build(world.geometry());
+    let accel = args.backend.build(world.geometry(), intersect(args))?;
     let build_seconds = start.elapsed().as_secs_f64();
 
     let settings = settings(args, &scene, &world);
     let times = stats::Times { load_seconds, build_seconds };
-    let origin = Origin { scene_file: &args.scene, scene: &scene, settings: &settings, backend: args.backend, times };
+    let origin = Origin {
+        scene_file: &args.scene,
+        scene: &scene,
+        settings: &settings,
+        backend: args.backend,
+        intersect: intersect(args),
+        times,
+    };
     let mut report = progress::Report::new(args.progress);
     signals::work_in_passes();
     let rendering = gonio_tracer::render(&world, &*accel, &settings, &mut |pass| {
@@ -161,6 +175,10 @@ fn check_crop(args: &Args, scene: &Scene) -> Result<()> {
         }
         _ => Ok(()),
     }
+}
+
+fn intersect(args: &Args) -> Intersect {
+    if args.fast_intersect { Intersect::Fast } else { Intersect::Robust }
 }
 
 fn settings(args: &Args, scene: &Scene, world: &World) -> RenderSettings {

@@ -105,7 +105,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     validate_kernel(&options, &mut sink);
     let pictures = scenes::run(&options, &args.out, &mut sink)?;
-    census::run(&options, &mut sink);
+    census::run(&options, &mut sink)?;
     if args.plant_failure {
         sink(planted_failure());
     }

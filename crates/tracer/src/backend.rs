@@ -1,8 +1,9 @@
 //! The choice of a ray-casting backend.
 
-use gonio_accel::{Accel, Brute, Geometry, Obvhs};
+use gonio_accel::{Accel, Brute, Geometry, Intersect, Obvhs};
 use std::fmt;
 use std::str::FromStr;
+use thiserror::Error;
 
 /// A ray-casting backend. All find the same hits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,16 +14,29 @@ pub enum Backend {
     Obvhs,
 }
 
+/// Why a backend could not be built.
+#[derive(Debug, Error)]
+#[error("the backend {backend} cannot be built")]
+pub struct BackendError {
+    /// Which backend.
+    pub backend: Backend,
+    /// What it said.
+    pub source: Box<dyn std::error::Error + Send + Sync>,
+}
+
 impl Backend {
     /// All backends of this build.
     pub const ALL: [Self; 2] = [Self::Brute, Self::Obvhs];
 
-    /// Builds the backend's structure over a geometry.
-    pub fn build(self, geometry: &Geometry) -> Box<dyn Accel> {
-        match self {
+    /// Builds the backend's structure over a geometry. `Brute` is robust whatever is asked for.
+    ///
+    /// # Errors
+    /// If the backend lacks something that it needs, such as memory or its library.
+    pub fn build(self, geometry: &Geometry, intersect: Intersect) -> Result<Box<dyn Accel>, BackendError> {
+        Ok(match self {
             Self::Brute => Box::new(Brute::new(geometry)),
-            Self::Obvhs => Box::new(Obvhs::new(geometry)),
-        }
+            Self::Obvhs => Box::new(Obvhs::new(geometry, intersect)),
+        })
     }
 }
 

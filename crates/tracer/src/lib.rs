@@ -9,14 +9,15 @@
 //! ```no_run
 //! use std::ops::ControlFlow;
 //!
+//! use gonio_accel::Intersect;
 //! use gonio_tracer::{Backend, RenderSettings, World, render, scene::Scene};
 //!
 //! let scene = Scene::load("scenes/cornell-box.toml".as_ref())?;
 //! let world = World::new(&scene)?;
-//! let accel = Backend::Obvhs.build(world.geometry());
+//! let accel = Backend::Obvhs.build(world.geometry(), Intersect::Robust)?;
 //! let rendering = render(&world, &*accel, &RenderSettings::of(&scene, &world), &mut |_| ControlFlow::Continue(()));
 //! println!("{}", rendering.stats.film_hash);
-//! # Ok::<(), gonio_tracer::scene::SceneError>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 #![forbid(unsafe_code)]
 
@@ -44,7 +45,7 @@ pub mod texture;
 pub mod whole_file;
 pub mod world;
 
-pub use backend::Backend;
+pub use backend::{Backend, BackendError};
 pub use layers::Layers;
 pub use material::constant_surface;
 pub use plan::Plan;

@@ -3,6 +3,7 @@
 use super::stats::Times;
 use crate::output::{Target, write_all};
 use anyhow::{Result, anyhow};
+use gonio_accel::Intersect;
 use gonio_tracer::image::{Metadata, Window, encode_exr, encode_png};
 use gonio_tracer::scene::Scene;
 use gonio_tracer::{Backend, RenderSettings, Rendering};
@@ -14,6 +15,7 @@ pub(super) struct Origin<'a> {
     pub(super) scene: &'a Scene,
     pub(super) settings: &'a RenderSettings,
     pub(super) backend: Backend,
+    pub(super) intersect: Intersect,
     pub(super) times: Times,
 }
 
@@ -57,6 +59,7 @@ fn metadata(origin: &Origin, rendering: &Rendering) -> Metadata {
     let aspect = f64::from(film.width) / f64::from(film.height);
     let other = vec![
         ("scene".to_owned(), origin.scene_file.display().to_string()),
+        ("intersect".to_owned(), origin.intersect.to_string()),
         ("plan".to_owned(), settings.plan.to_string()),
         ("russian_roulette".to_owned(), settings.russian_roulette.to_string()),
         ("sample_range".to_owned(), format!("0..{}", stats.spp)),

@@ -14,7 +14,7 @@ pub(super) struct Times {
 
 /// Everything that is known about a rendering. `x` and `y` are pixels of the whole picture, also with a crop.
 pub(super) fn stats(origin: &Origin, rendering: &Rendering) -> Value {
-    let Origin { settings, times, backend, .. } = origin;
+    let Origin { settings, times, backend, intersect, .. } = origin;
     let stats = &rendering.stats;
     let rate = if stats.render_seconds > 0.0 { stats.samples as f64 / stats.render_seconds / 1e6 } else { 0.0 };
     let largest: Vec<Value> = stats
@@ -36,6 +36,7 @@ pub(super) fn stats(origin: &Origin, rendering: &Rendering) -> Value {
         "largest_samples": largest,
         "dropped_samples": stats.dropped_samples,
         "backend": backend.to_string(),
+        "intersect": intersect.to_string(),
         "threads": stats.threads,
         "seed": settings.seed,
         "spp": stats.spp,

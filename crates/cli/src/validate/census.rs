@@ -14,9 +14,10 @@ mod rays;
 
 use super::wanted;
 use crate::random::seed_for;
+use anyhow::Result;
 use compare::{compare, leaks};
 use faults::FAULTS;
-use gonio_accel::Accel;
+use gonio_accel::{Accel, Intersect};
 use gonio_lab::{Check, Effort, Options, Outcome};
 use gonio_tracer::Backend;
 use meshes::{Specimen, specimens};
@@ -33,7 +34,7 @@ pub(super) const INSTRUMENTS: [(&str, &str); 2] = [
 ];
 
 /// Runs the census of all backends and hands each check to `sink`.
-pub(super) fn run(options: &Options, sink: &mut dyn FnMut(Check)) {
+pub(super) fn run(options: &Options, sink: &mut dyn FnMut(Check)) -> Result<()> {
     let count = match options.effort {
         Effort::Quick => 1 << 13,
         Effort::Standard => 1 << 15,
@@ -59,9 +60,9 @@ pub(super) fn run(options: &Options, sink: &mut dyn FnMut(Check)) {
         });
     };
     for specimen in specimens() {
-        let oracle = Backend::Brute.build(&specimen.geometry);
+        let oracle = Backend::Brute.build(&specimen.geometry, Intersect::Robust)?;
         for backend in Backend::ALL.into_iter().filter(|backend| *backend != Backend::Brute) {
-            let accel = backend.build(&specimen.geometry);
+            let accel = backend.build(&specimen.geometry, Intersect::Robust)?;
             for family in Family::ALL {
                 let subject = format!("{backend} on {}: {family} rays", specimen.name);
                 send("census", subject, &mut |seed| agreement(&specimen, &*oracle, &*accel, family, count, seed));
@@ -69,21 +70,21 @@ pub(super) fn run(options: &Options, sink: &mut dyn FnMut(Check)) {
         }
         if specimen.closed {
             for backend in Backend::ALL {
-                let accel = backend.build(&specimen.geometry);
+                let accel = backend.build(&specimen.geometry, Intersect::Robust)?;
                 send("leaks", format!("{backend} inside the {}", specimen.name), &mut |seed| {
                     let (count, detail) = leaks(&*accel, &specimen, count, seed);
                     Finding { count, limit: 0, at_least: false, meaning: "rays that leave ≤", detail }
                 });
             }
             for (name, fault) in FAULTS {
-                let wrong = fault(Backend::Obvhs.build(&specimen.geometry));
+                let wrong = fault(Backend::Obvhs.build(&specimen.geometry, Intersect::Robust)?);
                 send("planted-faults", format!("census: {name} on {}", specimen.name), &mut |seed| {
                     let mut finding = agreement(&specimen, &*oracle, &*wrong, Family::Random, 1 << 13, seed);
                     (finding.limit, finding.at_least, finding.meaning) = (1, true, "disagreements noticed ≥");
                     finding
                 });
             }
-            let wrong = faults::drops_hits(Backend::Obvhs.build(&specimen.geometry));
+            let wrong = faults::drops_hits(Backend::Obvhs.build(&specimen.geometry, Intersect::Robust)?);
             send("planted-faults", format!("leaks: drops hits on {}", specimen.name), &mut |seed| {
                 let (count, detail) = leaks(&*wrong, &specimen, 1 << 13, seed);
                 Finding { count, limit: 1, at_least: true, meaning: "leaks noticed ≥", detail }
@@ -91,6 +92,7 @@ pub(super) fn run(options: &Options, sink: &mut dyn FnMut(Check)) {
         }
     }
     not_run(options, sink);
+    Ok(())
 }
 
 /// Backends that this build does not have, by name: silence would read as success.

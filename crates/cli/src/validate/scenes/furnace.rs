@@ -4,6 +4,7 @@
 //! written to the report's folder, where a scene that fails can be rendered again by hand.
 
 use anyhow::{Context, Result};
+use gonio_accel::Intersect;
 use gonio_tracer::scene::{Color, Model, Scene};
 use gonio_tracer::{Backend, Plan, RenderSettings, Rendering, World, render};
 use std::fmt;
@@ -128,7 +129,7 @@ impl Furnace {
     /// Renders the scene.
     pub(super) fn render(&self, scene: &Scene, shot: &Shot, spp: u32, seed: u64) -> Result<Rendering> {
         let world = World::new(scene)?;
-        let accel = shot.backend.build(world.geometry());
+        let accel = shot.backend.build(world.geometry(), Intersect::Robust)?;
         let mut settings = RenderSettings { spp, seed, threads: shot.threads, ..RenderSettings::of(scene, &world) };
         settings.russian_roulette = shot.roulette;
         settings.plan = shot.plan.unwrap_or(settings.plan);
