@@ -6,6 +6,7 @@
 //! the same for the kernel. What cannot run is named and never counted as passed.
 
 mod census;
+mod draw;
 mod grade;
 mod html;
 mod report;
@@ -109,6 +110,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if args.plant_failure {
         sink(planted_failure());
     }
+    let plots = if args.only.is_none() { gonio_lab::plots::plots(&options) } else { Vec::new() };
     if let Some(spinner) = spinner {
         spinner.finish_and_clear();
     }
@@ -120,7 +122,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let report = Report::new(&options, checks, instruments(), start.elapsed().as_secs_f64());
     let json = serde_json::to_string_pretty(&report).context("the report cannot be written as JSON")? + "\n";
     write_text(&Target::File(args.out.join("report.json")), &json)?;
-    write_text(&Target::File(args.out.join("report.html")), &html::page(&report, &pictures))?;
+    write_text(&Target::File(args.out.join("report.html")), &html::page(&report, &pictures, &plots))?;
     let printed = if args.json {
         json
     } else {

@@ -124,6 +124,12 @@ fn dither(view: View, w: Dir, random: &mut Random) -> Dir {
     Dir::new(blur(w.x, 0), blur(w.y, 21), blur(w.z, 42))
 }
 
+/// Observed and expected counts of the cells at one wo.
+pub(crate) fn observed_and_expected(view: View, at: &Prepared, n: u64, random: &mut Random) -> Vec<(u64, f64)> {
+    let counts = count(view, at.wo, &at.cells, n, random);
+    counts.cells.into_iter().zip(at.integrals.iter().map(|i| n as f64 * i.value[3])).collect()
+}
+
 /// The p-value at one wo, and what it rests on.
 fn test(view: View, at: &Prepared, n: u64, random: &mut Random) -> (f64, String) {
     let Prepared { wo, cells, integrals, total, .. } = at;

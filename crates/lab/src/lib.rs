@@ -39,6 +39,7 @@ mod lanes;
 mod mitsuba;
 mod normalisation;
 mod oracle;
+pub mod plots;
 mod precision;
 mod probe;
 mod quadrature;

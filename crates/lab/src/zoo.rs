@@ -42,6 +42,13 @@ pub(crate) struct Species {
     pub(crate) oracle: fn(&[f64], Dir, Dir) -> Worth,
 }
 
+impl Species {
+    /// Whether its first two numbers are widths.
+    pub(crate) fn has_width(&self) -> bool {
+        self.parameters[0].log_from == ALPHA.log_from
+    }
+}
+
 macro_rules! species {
     ($name:ident, $text:literal, $build:ident, $oracle:path, [$($parameter:expr),*]) => {
         /// See the builder of the same name.
@@ -153,7 +160,8 @@ const SILVER: [f32; 6] = [0.155, 0.117, 0.138, 4.828, 3.122, 2.147];
 const WHITE: [f32; 3] = [1.0; 3];
 const COLOUR: [f32; 3] = [0.8, 0.5, 0.2];
 
-fn row(name: impl Into<String>, lobes: &[(f32, &'static Species, &[f32])]) -> Row {
+/// A row; weight, species and numbers of each lobe.
+pub(crate) fn row(name: impl Into<String>, lobes: &[(f32, &'static Species, &[f32])]) -> Row {
     let lobes: Vec<_> = lobes.iter().map(|(w, s, p)| (*w, *s, p.to_vec())).collect();
     // Lambert and mirror return ρ at every angle, so what is made of them has a known albedo.
     let known = lobes.iter().all(|(_, s, _)| s.name == "lambert" || s.name == "mirror");

@@ -230,10 +230,17 @@ pub fn encode_png(picture: &Picture, exposure: f32) -> Result<Vec<u8>, String> {
     check(picture)?;
     let gain = exposure.exp2();
     let encoded: Vec<u8> = picture.rgb.iter().flatten().map(|&value| encode_srgb(value * gain)).collect();
+    encode_rgb8(picture.width, picture.height, &encoded)
+}
+
+/// The bytes of a PNG file of 8-bit sRGB colours, three bytes per pixel, rows from the top.
+///
+/// # Errors
+/// A sentence: there are no pixels, or the wrong number of them.
+pub fn encode_rgb8(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
-    let kind = image::ExtendedColorType::Rgb8;
-    image::ImageEncoder::write_image(encoder, &encoded, picture.width, picture.height, kind)
+    image::ImageEncoder::write_image(encoder, rgb, width, height, image::ExtendedColorType::Rgb8)
         .map_err(|error| format!("it cannot be encoded: {error}"))?;
     Ok(bytes)
 }

@@ -1,13 +1,16 @@
 //! The report as one self-contained page: no script, nothing loaded, light and dark, readable on a phone.
 
+use super::draw::figure;
 use super::grade::{groups, severity, short, verdict, worst};
 use super::report::Report;
 use super::scenes::{Exhibit, MAGNIFIED};
+use gonio_lab::plots::Plot;
 use gonio_lab::{Check, Outcome};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// The whole page.
-pub(super) fn page(report: &Report, exhibits: &[Exhibit]) -> String {
+pub(super) fn page(report: &Report, exhibits: &[Exhibit], plots: &[Plot]) -> String {
     let (class, word) = if report.failed > 0 { ("bad", "Failed") } else { ("good", "Passed") };
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -27,6 +30,8 @@ pub(super) fn page(report: &Report, exhibits: &[Exhibit]) -> String {
     failures(&mut page, report);
     overview(&mut page, report);
     pictures(&mut page, exhibits);
+    speeds(&mut page, exhibits);
+    lobes(&mut page, plots);
     page += "<h2>Every check</h2>\n";
     for (name, group) in groups(&report.checks) {
         instrument(&mut page, report, name, &group);
@@ -93,6 +98,52 @@ fn pictures(page: &mut String, exhibits: &[Exhibit]) {
         );
     }
     *page += "</div>\n";
+}
+
+/// How fast each backend rendered the furnaces.
+fn speeds(page: &mut String, exhibits: &[Exhibit]) {
+    let backends: BTreeSet<&str> = exhibits.iter().flat_map(|e| &e.speeds).map(|s| s.backend.as_str()).collect();
+    if backends.is_empty() {
+        return;
+    }
+    let most = exhibits.iter().flat_map(|e| &e.speeds).map(|s| s.msamples_per_second).fold(1e-300, f64::max);
+    *page += "<h2>Backends</h2>\n<p class=\"soft\">Millions of samples per second of the furnaces above, all threads, one run \
+              each: an impression, not a measurement (<code>gonio accel bench</code> measures).</p>\n<table><thead><tr><th>Furnace</th>";
+    for backend in &backends {
+        let _ = write!(page, "<th>{}</th>", escape(backend));
+    }
+    *page += "</tr></thead><tbody>\n";
+    for exhibit in exhibits {
+        let _ = write!(page, "<tr><td>{}</td>", escape(exhibit.name));
+        for backend in &backends {
+            let speed = exhibit.speeds.iter().find(|s| s.backend == *backend).map_or(0.0, |s| s.msamples_per_second);
+            let _ = write!(
+                page,
+                "<td class=\"number\" data-name=\"{}\">{speed:.2}<svg class=\"bar\" viewBox=\"0 0 100 8\" \
+                 preserveAspectRatio=\"none\" aria-hidden=\"true\"><rect class=\"fill\" y=\"1\" width=\"{:.1}\" \
+                 height=\"6\"/></svg></td>",
+                escape(backend),
+                100.0 * speed / most
+            );
+        }
+        *page += "</tr>\n";
+    }
+    *page += "</tbody></table>\n";
+}
+
+/// The plots, lobe by lobe.
+fn lobes(page: &mut String, plots: &[Plot]) {
+    let mut names: Vec<&str> = Vec::new();
+    for plot in plots {
+        if !names.contains(&plot.lobe) {
+            names.push(plot.lobe);
+        }
+    }
+    for name in names {
+        let _ = writeln!(page, "<h2>Lobe: {}</h2>\n<div class=\"pictures\">", escape(name));
+        plots.iter().filter(|plot| plot.lobe == name).for_each(|plot| *page += &figure(plot));
+        *page += "</div>\n";
+    }
 }
 
 fn instrument(page: &mut String, report: &Report, name: &str, group: &[&Check]) {
@@ -183,12 +234,12 @@ fn bar(check: &Check) -> String {
     )
 }
 
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 /// RFC 4648, with padding.
-fn base64(bytes: &[u8]) -> String {
+pub(super) fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for group in bytes.chunks(3) {

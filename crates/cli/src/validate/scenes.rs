@@ -36,6 +36,14 @@ pub(super) struct Exhibit {
     /// PNG files: as rendered, and the deviation from the answer, magnified around mid grey.
     pub(super) rendered: Vec<u8>,
     pub(super) deviation: Vec<u8>,
+    /// Of the first rendering with each backend.
+    pub(super) speeds: Vec<Speed>,
+}
+
+/// How fast a backend rendered.
+pub(super) struct Speed {
+    pub(super) backend: String,
+    pub(super) msamples_per_second: f64,
 }
 
 /// How much the deviation is magnified in the report.
@@ -78,9 +86,15 @@ fn measure(
     let mut dropped = 0;
     let mut samples = 0;
     let mut pictures: Vec<(Shot, Picture, String)> = Vec::new();
+    let mut speeds: Vec<Speed> = Vec::new();
     for shot in furnace.shots() {
         let start = Instant::now();
         let rendering = furnace.render(&scene, &shot, spp, options.seed)?;
+        let backend = shot.backend.to_string();
+        if speeds.iter().all(|speed| speed.backend != backend) {
+            let seconds = rendering.stats.render_seconds.max(1e-9);
+            speeds.push(Speed { backend, msamples_per_second: rendering.stats.samples as f64 / seconds / 1e6 });
+        }
         let picture = rendering.picture;
         let worst = worst_block(&picture, furnace.answer(&scene), furnace.slack(&scene));
         dropped += rendering.stats.dropped_samples;
@@ -101,7 +115,7 @@ fn measure(
         detail: format!("of {samples} samples"),
         seconds: 0.0,
     });
-    exhibit(furnace, &scene, &picture, out)
+    exhibit(furnace, &scene, &picture, speeds, out)
 }
 
 fn p_value(furnace: &Furnace, shot: &Shot, worst: &Worst, level: f64, spp: u32, start: Instant) -> Check {
@@ -211,7 +225,13 @@ fn hashes(
     Ok(())
 }
 
-fn exhibit(furnace: &Furnace, scene: &gonio_tracer::scene::Scene, picture: &Picture, out: &Path) -> Result<Exhibit> {
+fn exhibit(
+    furnace: &Furnace,
+    scene: &gonio_tracer::scene::Scene,
+    picture: &Picture,
+    speeds: Vec<Speed>,
+    out: &Path,
+) -> Result<Exhibit> {
     let expected = furnace.answer(scene);
     let mut deviation = picture.clone();
     for rgb in &mut deviation.rgb {
@@ -231,6 +251,7 @@ fn exhibit(furnace: &Furnace, scene: &gonio_tracer::scene::Scene, picture: &Pict
         answer: format!("{}: {r:.5}, {g:.5}, {b:.5}", furnace.law()),
         rendered: save(format!("{}.png", furnace.name), picture, scene.film.exposure)?,
         deviation: save(format!("{}-deviation.png", furnace.name), &deviation, 0.0)?,
+        speeds,
     })
 }
 
