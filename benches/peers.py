@@ -62,7 +62,7 @@ class Gonio:
             stats = Path(scratch) / "stats.json"
             subprocess.run(
                 [self.binary, "render", SCENE, "-o", Path(scratch) / "w1.exr", "--spp", str(self.spp),
-                 "--threads", "1", "--no-russian-roulette", "--stats", stats],
+                 "--threads", "1", "--no-russian-roulette", "--no-layers", "--stats", stats],
                 check=True, stdout=subprocess.DEVNULL,
             )
             measured = json.loads(stats.read_text())

@@ -1,5 +1,7 @@
 //! `gonio compare`: how two pictures of one scene differ, and whether chance explains it.
 
+#[cfg(feature = "flip")]
+mod flip;
 mod measure;
 
 use crate::output::{Target, write_text};
@@ -16,7 +18,8 @@ use std::process::ExitCode;
 ///
 /// Prints the means, the root mean square error, relMSE = mean of (B − A)²/(A² + 0.01), how many pixels differ at all and
 /// how many of those have no differing neighbour, and a test: in blocks of 8 × 8 pixels and as a whole, is the mean of B − A
-/// zero, as far as the spread of the pixels can tell? The test holds for pixels with independent noise (a box filter, other
+/// zero, as far as the spread of the pixels can tell? With the feature `flip`, also the mean of FLIP (Andersson et al. 2020)
+/// between the pictures as they look on a screen. The test holds for pixels with independent noise (a box filter, other
 /// seeds or other renderers); its significance covers all blocks and channels together. A is the reference.
 ///
 /// Reads OpenEXR (linear), PNG and JPEG (sRGB).
@@ -59,9 +62,20 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if let Some(path) = &args.output {
         write_difference(path, &a, &found)?;
     }
-    let text = if args.json { format!("{:#}\n", as_json(args, &found)) } else { as_text(&a, &found) };
+    let flip = flip(&a, &b);
+    let text = if args.json { format!("{:#}\n", as_json(args, &found, flip)) } else { as_text(&a, &found, flip) };
     write_text(&Target::Stdout, &text)?;
     Ok(ExitCode::from(if args.test && !found.explained_by_chance() { 3 } else { 0 }))
+}
+
+#[cfg(feature = "flip")]
+fn flip(a: &Picture, b: &Picture) -> Option<f64> {
+    Some(flip::mean(a, b))
+}
+
+#[cfg(not(feature = "flip"))]
+fn flip(_: &Picture, _: &Picture) -> Option<f64> {
+    None
 }
 
 fn write_difference(path: &Path, a: &Picture, found: &Difference) -> Result<()> {
@@ -81,7 +95,7 @@ fn write_difference(path: &Path, a: &Picture, found: &Difference) -> Result<()> 
     }
 }
 
-fn as_text(a: &Picture, found: &Difference) -> String {
+fn as_text(a: &Picture, found: &Difference, flip: Option<f64>) -> String {
     let mut text = format!("{:24}{:>14}{:>14}{:>14}\n", "", "red", "green", "blue");
     let mut row = |name: &str, values: [f64; 3], show: fn(f64) -> String| {
         let [r, g, b] = values.map(show);
@@ -94,6 +108,9 @@ fn as_text(a: &Picture, found: &Difference) -> String {
     row("B over A", [0, 1, 2].map(|c| found.means[1][c] / found.means[0][c] - 1.0), percent);
     row("root mean square error", found.rmse, plain);
     row("relMSE", found.rel_mse, plain);
+    if let Some(flip) = flip {
+        let _ = writeln!(text, "{:24}{flip:>14.7}", "mean FLIP");
+    }
     let (pixels, largest) = (a.rgb.len(), found.largest);
     let _ = writeln!(
         text,
@@ -120,7 +137,7 @@ fn as_text(a: &Picture, found: &Difference) -> String {
     text
 }
 
-fn as_json(args: &Args, found: &Difference) -> serde_json::Value {
+fn as_json(args: &Args, found: &Difference, flip: Option<f64>) -> serde_json::Value {
     json!({
         "a": args.a.display().to_string(),
         "b": args.b.display().to_string(),
@@ -128,6 +145,7 @@ fn as_json(args: &Args, found: &Difference) -> serde_json::Value {
         "mean_b": found.means[1],
         "rmse": found.rmse,
         "rel_mse": found.rel_mse,
+        "flip": flip,
         "differing_pixels": found.differing,
         "isolated_pixels": found.isolated,
         "pixels_not_numbers": found.not_numbers,

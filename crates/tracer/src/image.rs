@@ -228,9 +228,14 @@ pub fn write_png(path: &Path, picture: &Picture, exposure: f32) -> Result<(), Im
 /// A sentence: the picture has no pixels or the wrong number of them.
 pub fn encode_png(picture: &Picture, exposure: f32) -> Result<Vec<u8>, String> {
     check(picture)?;
+    encode_rgb8(picture.width, picture.height, &srgb8(picture, exposure))
+}
+
+/// The picture as 8-bit sRGB, three bytes per pixel, brightened by `exposure` stops: clamped to [0, 1], and black where a
+/// value is not a number.
+pub fn srgb8(picture: &Picture, exposure: f32) -> Vec<u8> {
     let gain = exposure.exp2();
-    let encoded: Vec<u8> = picture.rgb.iter().flatten().map(|&value| encode_srgb(value * gain)).collect();
-    encode_rgb8(picture.width, picture.height, &encoded)
+    picture.rgb.iter().flatten().map(|&value| encode_srgb(value * gain)).collect()
 }
 
 /// The bytes of a PNG file of 8-bit sRGB colours, three bytes per pixel, rows from the top.
