@@ -305,7 +305,7 @@ impl Real for F32x8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::sin_cos_turns;
+    use crate::math::{atan2_turns, sin_cos_turns};
     use crate::testing::{Random, same_bits, special_values};
     use std::vec::Vec;
 
@@ -330,7 +330,7 @@ mod tests {
         let others = [a.sqrt(), a.abs(), a.min(b), a.max(b), a.copysign(b), a.clamp(-1.5, 0.5), a.or_zero(mask)];
         let chosen = [R::select(mask, a, c), R::select(!mask, a, c), a.round_to_int().0, R::lit(0.1), R::ZERO, R::ONE];
         let (sin, cos) = sin_cos_turns(a);
-        sums.into_iter().chain(others).chain(chosen).chain([sin, cos]).collect()
+        sums.into_iter().chain(others).chain(chosen).chain([sin, cos, atan2_turns(a, b)]).collect()
     }
 
     /// Every operation on reals that has a truth as result, in order.

@@ -134,6 +134,7 @@ fn parts<R: Real>(x: [R; 6]) -> Vec<R> {
     out.extend([
         sin,
         cos,
+        math::atan2_turns(x[0], x[1]),
         fresnel::dielectric(x[3], x[4]),
         fresnel::conductor(x[3], x[4], x[5]),
         fresnel::schlick(x[3], x[4]),

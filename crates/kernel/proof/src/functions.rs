@@ -56,6 +56,7 @@ macro_rules! functions {
             fresnel::dielectric(cos_o: R, eta: R) -> R;
             fresnel::conductor(cos_o: R, eta: R, k: R) -> R;
             fresnel::schlick(cos_o: R, f0: R) -> R;
+            math::atan2_turns(y: R, x: R) -> R;
             math::sin_cos_turns(u: R) -> (R, R);
             warp::sample_cosine_hemisphere(u: [R; 2]) -> Vec3<R>;
             warp::pdf_cosine_hemisphere(w: Vec3<R>) -> R;
