@@ -1,20 +1,23 @@
-//! The Cornell box is the picture that Mitsuba 3 makes: `tests/reference/cornell_box.json`, written by the script beside it.
+//! Pictures that Mitsuba 3 makes too: the JSON files of `tests/reference`, written by the scripts beside them.
 //!
 //! Sixteen seeds on each side. The picture's mean per channel must agree within 0.3 % at a standard error of the
 //! difference of at most 0.1 %. Blocks of 8 × 8 pixels are compared by Welch's t-test at a family-wise level of 0.01
 //! (Šidák over blocks and channels); a block fails only if it is significant and more than 0.5 % off. Blocks with emitter or
 //! silhouette pixels, where pixel filters and edge rules show, are counted apart.
 
-use crate::support::{cornell_box, repository};
+use crate::support::{Folder, Moments, cornell_box, data, moments, repository, welch};
 use gonio_accel::Intersect;
+use gonio_tracer::image::{Metadata, Picture, write_exr};
+use gonio_tracer::scene::{Scene, Sky};
 use gonio_tracer::{Backend, RenderSettings, World, render};
 use serde::Deserialize;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::ops::ControlFlow;
+use std::path::Path;
 
 #[derive(Deserialize)]
 struct Reference {
     width: u32,
+    height: u32,
     seeds: usize,
     block: usize,
     scattering_events: u32,
@@ -25,52 +28,29 @@ struct Reference {
     excluded: Vec<usize>,
 }
 
-/// Mean and variance (n − 1) of the same quantity over seeds.
-struct Moments {
-    mean: f64,
-    variance: f64,
-}
-
-fn moments(values: impl Iterator<Item = f64> + Clone) -> Moments {
-    let n = values.clone().count() as f64;
-    let mean = values.clone().sum::<f64>() / n;
-    Moments { mean, variance: values.map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0) }
-}
-
-/// Two-sided p-value of Welch's t-test for two samples of n.
-fn welch(a: &Moments, b: &Moments, n: f64) -> f64 {
-    let (va, vb) = (a.variance / n, b.variance / n);
-    if va + vb == 0.0 {
-        return if a.mean == b.mean { 1.0 } else { 0.0 };
-    }
-    let freedom = (va + vb).powi(2) / ((va * va + vb * vb) / (n - 1.0));
-    let t = (a.mean - b.mean).abs() / (va + vb).sqrt();
-    2.0 * StudentsT::new(0.0, 1.0, freedom).expect("positive degrees of freedom").sf(t)
-}
-
-#[test]
-fn the_cornell_box_agrees_with_mitsuba() {
-    let text =
-        std::fs::read_to_string(repository("tests/reference/cornell_box.json")).expect("the reference is shipped");
+/// Reads a reference, renders its scene with as many seeds, and compares; the error says what differs.
+fn compare(name: &str, scene: &Scene) -> Result<(), String> {
+    let path = repository("tests/reference").join(name).with_extension("json");
+    let text = std::fs::read_to_string(path).expect("the reference is shipped");
     let reference: Reference = serde_json::from_str(&text).expect("the reference is JSON");
-    let scene = cornell_box(reference.width, 16);
-    let world = World::new(&scene).expect("the shipped scene is sound");
+    assert_eq!((scene.film.width, scene.film.height), (reference.width, reference.height));
+    let world = World::new(scene).expect("the scene is sound");
     let accel = Backend::Obvhs.build(world.geometry(), Intersect::Robust).expect("obvhs needs nothing");
-    let (size, block) = (reference.width as usize, reference.block);
-    let per_row = size / block;
+    let (width, block) = (reference.width as usize, reference.block);
+    let (per_row, per_column) = (width / block, reference.height as usize / block);
 
     let mut images: Vec<[f64; 3]> = Vec::new();
     let mut blocks: Vec<Vec<f64>> = Vec::new();
     for seed in 0..reference.seeds as u64 {
-        let mut settings = RenderSettings { seed: 1000 + seed, ..RenderSettings::of(&scene, &world) };
+        let mut settings = RenderSettings { seed: 1000 + seed, ..RenderSettings::of(scene, &world) };
         settings.max_depth = reference.scattering_events;
         let picture = render(&world, &*accel, &settings, &mut |_| ControlFlow::Continue(())).picture;
         let mut sums = vec![0.0; reference.mean.len()];
         for (i, rgb) in picture.rgb.iter().enumerate() {
-            let at = i / size / block * per_row + i % size / block;
+            let at = i / width / block * per_row + i % width / block;
             (0..3).for_each(|c| sums[3 * at + c] += f64::from(rgb[c]) / (block * block) as f64);
         }
-        let count = (per_row * per_row) as f64;
+        let count = (per_row * per_column) as f64;
         images.push(std::array::from_fn(|c| sums.iter().skip(c).step_by(3).sum::<f64>() / count));
         blocks.push(sums);
     }
@@ -80,11 +60,13 @@ fn the_cornell_box_agrees_with_mitsuba() {
         let ours = moments(images.iter().map(|i| i[c]));
         let difference = ours.mean / reference.image_mean[c] - 1.0;
         let error = ((ours.variance + reference.image_variance[c]) / n).sqrt() / reference.image_mean[c];
-        println!("channel {c}: {:+.4} % ± {:.4} %", 100.0 * difference, 100.0 * error);
-        assert!(error <= 1e-3 && difference.abs() <= 3e-3, "channel {c}: {difference} ± {error}");
+        println!("{name}, channel {c}: {:+.4} % ± {:.4} %", 100.0 * difference, 100.0 * error);
+        if error > 1e-3 || difference.abs() > 3e-3 {
+            return Err(format!("{name}, channel {c}: {difference} ± {error}"));
+        }
     }
 
-    let kept: Vec<usize> = (0..per_row * per_row).filter(|b| !reference.excluded.contains(b)).collect();
+    let kept: Vec<usize> = (0..per_row * per_column).filter(|b| !reference.excluded.contains(b)).collect();
     let level = 1.0 - 0.99_f64.powf(1.0 / (3 * kept.len()) as f64);
     let compare = |b: usize, c: usize| {
         let i = 3 * b + c;
@@ -99,5 +81,75 @@ fn the_cornell_box_agrees_with_mitsuba() {
     };
     println!("{} of {} blocks with edges differ", differing(&reference.excluded).len(), reference.excluded.len());
     let failed = differing(&kept);
-    assert!(failed.is_empty(), "{} of {}: {failed:#?}", failed.len(), 3 * kept.len());
+    if failed.is_empty() { Ok(()) } else { Err(format!("{} of {}: {failed:#?}", failed.len(), 3 * kept.len())) }
+}
+
+#[test]
+fn the_cornell_box_agrees_with_mitsuba() {
+    compare("cornell_box", &cornell_box(256, 16)).unwrap();
+}
+
+/// The scene of `tests/reference/environment.py` under a map.
+fn under(map: &Path, folder: &Folder) -> Scene {
+    let ground = "v -4 0 -4\nv -4 0 4\nv 4 0 4\nv 4 0 -4\nf 1 2 3\nf 1 3 4\n";
+    folder.write("ground.obj", ground);
+    let mut text = format!(
+        "[film]\nwidth = 128\nheight = 96\nspp = 64\n\
+         [camera]\norigin = [0.5, 2.0, 5.5]\ntarget = [0, 0.6, 0]\nvfov = 40\n\
+         [integrator]\nrussian_roulette = false\n\
+         [environment]\nmap = {map:?}\nrotation = 37\nintensity = 0.7\n\
+         [materials.ground]\nbase_color = [0.5, 0.45, 0.4]\n\
+         [materials.chalk]\nbase_color = [0.8, 0.6, 0.4]\n\
+         [materials.gold]\ntype = \"conductor\"\nalpha = 0.2\n\
+         eta = [0.143, 0.375, 1.442]\nk = [3.983, 2.386, 1.603]\n\
+         [materials.mirror]\ntype = \"mirror\"\nreflectance = 0.9\n\
+         [[meshes]]\nfile = \"ground.obj\"\nmaterial = \"ground\"\n"
+    );
+    for (material, x) in [("chalk", -1.5), ("gold", 0.0), ("mirror", 1.5)] {
+        let sphere = repository("scenes/sphere.obj");
+        text += &format!(
+            "[[meshes]]\nfile = {sphere:?}\nmaterial = \"{material}\"\n\
+             transform = [{{ scale = 0.65 }}, {{ translate = [{x}, 0.7, 0] }}]\n"
+        );
+    }
+    let mut scene = Scene::load(&folder.write("scene.toml", text)).expect("the scene is sound");
+    scene.meshes.iter_mut().for_each(|mesh| mesh.normals = None);
+    scene
+}
+
+/// The map that the script calls `formula`, as a file.
+fn formula(folder: &Folder) -> std::path::PathBuf {
+    let texel = |row: usize, column: usize| match (row, column) {
+        (3, 17) => [60.0, 50.0, 40.0],
+        _ => std::array::from_fn(|channel| ((column * 7 + row * 13 + channel * 5) % 17) as f32 / 16.0),
+    };
+    let rgb = (0..12).flat_map(|row| (0..24).map(move |column| texel(row, column))).collect();
+    let path = folder.path().join("formula.exr");
+    write_exr(&path, &Picture { width: 24, height: 12, rgb }, None, &Metadata::default()).expect("the folder takes files");
+    path
+}
+
+#[test]
+fn a_scene_under_a_map_agrees_with_mitsuba() {
+    let folder = Folder::new();
+    let mut scene = under(&formula(&folder), &folder);
+    compare("environment_formula", &scene).unwrap();
+    // One degree more, and the map a hundredth brighter: both are seen.
+    let Sky::Map(map) = &mut scene.environment.sky else { panic!("the scene has a map") };
+    map.rotation += 1.0;
+    println!("as it should be: {}", compare("environment_formula", &scene).unwrap_err());
+    let Sky::Map(map) = &mut scene.environment.sky else { panic!("the scene has a map") };
+    (map.rotation, map.intensity) = (map.rotation - 1.0, map.intensity * 1.01);
+    println!("as it should be: {}", compare("environment_formula", &scene).unwrap_err());
+}
+
+#[test]
+fn scenes_under_panoramas_agree_with_mitsuba() {
+    for name in ["brown_photostudio_02_1k", "noon_grass_1k"] {
+        if let Some(map) = data(&format!("hdri/{name}.hdr")) {
+            let folder = Folder::new();
+            let map = map.canonicalize().expect("it is there");
+            compare(&format!("environment_{name}"), &under(&map, &folder)).unwrap();
+        }
+    }
 }

@@ -1,12 +1,14 @@
 //! Threads, crops, plans, backends, scale and place never change a picture; light neither leaks in nor gets lost.
 
-use crate::support::cornell_box;
+use crate::support::{Random, cornell_box};
 use glam::{DAffine3, DVec3};
 use gonio_accel::Intersect;
 use gonio_kernel::Rgb;
-use gonio_tracer::scene::{Color, FresnelSpec, LobeSpec, Model, Scene};
+use gonio_tracer::image::Picture;
+use gonio_tracer::scene::{Color, Environment, FresnelSpec, LobeSpec, Model, Scene, Sky, SkyMap};
 use gonio_tracer::{Backend, Crop, Plan, RenderSettings, Rendering, World, render};
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 fn rendered(scene: &Scene, backend: Backend, change: impl Fn(&mut RenderSettings)) -> Rendering {
     let world = World::new(scene).expect("the scene is sound");
@@ -24,7 +26,7 @@ fn mean(rendering: &Rendering) -> [f64; 3] {
 /// A Cornell box with one of everything: a mirror, a rough metal, a mixture, a sky seen through the open front.
 fn varied() -> Scene {
     let mut scene = cornell_box(48, 8);
-    scene.environment = Rgb::new(0.2, 0.3, 0.5);
+    scene.environment = Environment::constant(Rgb::new(0.2, 0.3, 0.5));
     let lobe = |weight, model| LobeSpec { weight, model };
     let named = |scene: &mut Scene, name: &str, lobes: Vec<LobeSpec>| {
         scene.materials.iter_mut().find(|m| m.name == name).expect("a material of the shipped scene").lobes = lobes;
@@ -47,9 +49,19 @@ fn varied() -> Scene {
     scene
 }
 
+/// The same under a panorama of random texels.
+fn under_a_map() -> Scene {
+    let mut scene = varied();
+    let mut random = Random(9);
+    let rgb = (0..32 * 16).map(|_| [random.unit(), random.unit(), random.unit().powi(8) * 20.0]).collect();
+    let picture = Arc::new(Picture { width: 32, height: 16, rgb });
+    scene.environment.sky = Sky::Map(SkyMap { picture, rotation: 100.0, intensity: 0.5 });
+    scene
+}
+
 #[test]
 fn threads_backends_and_plans_never_change_a_picture() {
-    for scene in [cornell_box(48, 8), varied()] {
+    for scene in [cornell_box(48, 8), varied(), under_a_map()] {
         let expected = rendered(&scene, Backend::Obvhs, |s| s.threads = 1).stats.film_hash;
         for backend in Backend::ALL {
             for threads in [1, 2, 3] {
@@ -116,7 +128,7 @@ fn no_light_leaks_into_a_closed_black_box() {
     mesh.materials.extend([0, 0]);
     scene.meshes[0] = mesh;
     scene.camera.origin = DVec3::new(0.0, 0.0, 0.9);
-    scene.environment = Rgb::new(1.0, 1.0, 1.0);
+    scene.environment = Environment::constant(Rgb::splat(1.0));
     scene.integrator.max_depth = 16;
     scene.integrator.russian_roulette = false;
     for m in &mut scene.materials {

@@ -1,52 +1,13 @@
 //! Scene files, good and bad: what loads, what it becomes, and the very words of each refusal.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
+use crate::support::{Folder, data};
+use gonio_kernel::Rgb;
 use gonio_tracer::image::{Metadata, Picture, write_exr, write_png};
-use gonio_tracer::scene::{Color, Model, Scene};
-
-/// A folder of its own for one test, removed at its end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new() -> Self {
-        static COUNTER: AtomicU32 = AtomicU32::new(0);
-        let number = COUNTER.fetch_add(1, Ordering::Relaxed);
-        let path = std::env::temp_dir().join(format!("gonio-scene-files-{}-{number}", std::process::id()));
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn write(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
-        let path = self.0.join(name);
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(&path, content).unwrap();
-        path
-    }
-
-    /// The refusal of a file, without the folder's name.
-    fn refusal(&self, path: &Path) -> String {
-        let error = Scene::load(path).expect_err("this should have been refused");
-        self.strip(&error.to_string())
-    }
-
-    fn strip(&self, text: &str) -> String {
-        text.replace(&format!("{}/", self.0.display()), "")
-    }
-
-    fn warnings(&self, scene: &Scene) -> Vec<String> {
-        scene.warnings.iter().map(|warning| self.strip(warning)).collect()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
+use gonio_tracer::scene::{Color, Environment, Model, Scene, Sky};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
@@ -65,12 +26,8 @@ fn refused_scene(text: &str) -> String {
 
 #[test]
 fn every_torture_file_loads_or_says_why_in_under_a_second() {
-    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-    let root = std::env::var_os("GONIO_DATA").map_or(default, PathBuf::from).join("obj_torture");
-    let Ok(families) = fs::read_dir(&root) else {
-        println!("obj_torture: not there ({}), not run", root.display());
-        return;
-    };
+    let Some(root) = data("obj_torture") else { return };
+    let families = fs::read_dir(&root).expect("a folder");
     let (mut loaded, mut refused) = (0, 0);
     for family in families {
         for file in fs::read_dir(family.unwrap().path()).unwrap() {
@@ -103,7 +60,7 @@ fn an_obj_alone_gets_a_camera_and_a_white_sky() {
     let folder = Folder::new();
     let scene = Scene::load(&folder.write("tri.obj", TRIANGLE)).unwrap();
     assert_eq!(scene.meshes[0].triangles, [[0, 1, 2]]);
-    assert_eq!(scene.environment.r, 1.0);
+    assert_eq!(scene.environment, Environment::constant(Rgb::splat(1.0)));
     assert!(scene.camera.origin.z > 0.0 && scene.camera.origin.y > 0.0);
     assert_eq!(folder.warnings(&scene), ["tri.obj: faces without a material are drawn in grey"]);
 }
@@ -145,7 +102,7 @@ fn every_key_of_film_camera_and_integrator_arrives() {
 #[test]
 fn missing_files_are_named() {
     let folder = Folder::new();
-    let text = folder.refusal(&folder.0.join("absent.obj"));
+    let text = folder.refusal(&folder.path().join("absent.obj"));
     assert!(text.starts_with("absent.obj: cannot be read: "), "{text}");
     assert_eq!(
         refused_scene("[film]\nspp = 4\n[[meshes]]\nfile = \"absent.obj\"\n"),
@@ -447,8 +404,8 @@ fn a_bad_line_in_a_library_costs_only_that_line() {
 fn base_colour_images_are_found_decoded_and_shared() {
     let folder = Folder::new();
     let red = Picture { width: 1, height: 1, rgb: vec![[1.0, 0.0, 0.0]] };
-    fs::create_dir_all(folder.0.join("tex")).unwrap();
-    write_png(&folder.0.join("tex/red wood.png"), &red, 0.0).unwrap();
+    fs::create_dir_all(folder.path().join("tex")).unwrap();
+    write_png(&folder.path().join("tex/red wood.png"), &red, 0.0).unwrap();
     folder.write(
         "m.mtl",
         "newmtl a\nKd 0.5 0.5 0.5\nmap_Kd -s 2 2 2 C:\\work\\tex\\red wood.png\nnewmtl b\nmap_Kd tex\\red wood.png\n",
@@ -465,7 +422,7 @@ fn base_colour_images_are_found_decoded_and_shared() {
     assert_eq!(scene.textures.len(), 1);
     assert_eq!(scene.textures[0].sample(0.3, 0.3).r, 1.0);
     folder.write("tex/red wood.png", "not an image");
-    let text = folder.refusal(&folder.0.join("m.obj"));
+    let text = folder.refusal(&folder.path().join("m.obj"));
     assert!(text.starts_with("tex/red wood.png: the image cannot be decoded: "), "{text}");
 }
 
@@ -473,13 +430,89 @@ fn base_colour_images_are_found_decoded_and_shared() {
 fn pictures_that_cannot_be_written_say_so_and_leave_nothing_behind() {
     let folder = Folder::new();
     let picture = Picture { width: 1, height: 1, rgb: vec![[1.0; 3]] };
-    let nowhere = folder.0.join("absent/a.exr");
+    let nowhere = folder.path().join("absent/a.exr");
     let text = write_exr(&nowhere, &picture, None, &Metadata::default()).unwrap_err().to_string();
     assert!(folder.strip(&text).starts_with("absent/a.exr: cannot be written: "), "{text}");
     let text = write_png(&nowhere, &picture, 0.0).unwrap_err().to_string();
     assert!(folder.strip(&text).starts_with("absent/a.exr: cannot be written: "), "{text}");
-    let taken = folder.0.join("taken.png"); // a folder of that name cannot be replaced by a file
+    let taken = folder.path().join("taken.png"); // a folder of that name cannot be replaced by a file
     fs::create_dir(&taken).unwrap();
     assert!(write_png(&taken, &picture, 0.0).is_err());
-    assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 1);
+    assert_eq!(fs::read_dir(&folder.path()).unwrap().count(), 1);
+}
+
+/// A scene of one triangle under `[environment]` with these lines, which begin at line 4.
+fn under(lines: &str) -> String {
+    format!("[[meshes]]\nfile = \"tri.obj\"\n[environment]\n{lines}")
+}
+
+#[test]
+fn every_key_of_an_environment_map_arrives_and_odd_texels_are_dealt_with() {
+    let folder = Folder::new();
+    folder.write("tri.obj", TRIANGLE);
+    let rgb = vec![[1.0, 2.0, 3.0], [0.5, -1.0, 0.0], [0.0; 3], [-0.0, -2.0, 1.0], [4.0; 3], [5.0; 3]];
+    let map = Picture { width: 3, height: 2, rgb };
+    write_exr(&folder.path().join("sky.exr"), &map, None, &Metadata::default()).unwrap();
+    let text =
+        under("map = \"sky.exr\"\nrotation = -30\nintensity = 0.25\ncamera_visible = false\nilluminates = true\n");
+    let scene = Scene::load(&folder.write("scene.toml", text)).unwrap();
+    let Sky::Map(sky) = &scene.environment.sky else { panic!("{:?}", scene.environment) };
+    assert_eq!((sky.rotation, sky.intensity), (-30.0, 0.25));
+    assert_eq!((scene.environment.camera_visible, scene.environment.illuminates), (false, true));
+    assert_eq!(sky.picture.rgb[..4], [[1.0, 2.0, 3.0], [0.5, 0.0, 0.0], [0.0; 3], [0.0, 0.0, 1.0]]);
+    let warnings = folder.warnings(&scene);
+    assert!(
+        warnings.contains(&"sky.exr: 2 pixels with negative channels, which count as 0".to_owned()),
+        "{warnings:?}"
+    );
+
+    let black = Picture { width: 1, height: 1, rgb: vec![[0.0; 3]] };
+    write_exr(&folder.path().join("sky.exr"), &black, None, &Metadata::default()).unwrap();
+    let scene = Scene::load(&folder.write("scene.toml", under("map = \"sky.exr\"\n"))).unwrap();
+    assert!(folder.warnings(&scene).contains(&"the scene has no light: the picture will be black".to_owned()));
+    assert!(!gonio_tracer::World::new(&scene).unwrap().plan().environment);
+}
+
+#[test]
+fn environments_that_cannot_be_used_are_refused_in_words() {
+    let folder = Folder::new();
+    folder.write("tri.obj", TRIANGLE);
+    let texels = |name: &str, texel: [f32; 3]| {
+        let picture = Picture { width: 2, height: 2, rgb: vec![[1.0; 3], [1.0; 3], [1.0; 3], texel] };
+        write_exr(&folder.path().join(name), &picture, None, &Metadata::default()).unwrap();
+    };
+    texels("sky.exr", [2e6, 1.0, 1.0]);
+    texels("nan.exr", [f32::NAN, 1.0, 1.0]);
+    texels("inf.exr", [1.0, 1.0, f32::INFINITY]);
+    folder.write("cut.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n@`p\u{7f}@`p");
+    write_png(&folder.path().join("sky.png"), &Picture { width: 1, height: 1, rgb: vec![[1.0; 3]] }, 0.0).unwrap();
+    let cases = [
+        ("map = \"none.hdr\"", "scene.toml:4: the file \"none.hdr\" does not exist"),
+        (
+            "radiance = 1\nmap = \"sky.exr\"",
+            "scene.toml:5: an environment has either \"radiance\" or \"map\", not both",
+        ),
+        ("radiance = 1\nintensity = 2", "scene.toml:5: \"intensity\" is for an environment with a \"map\""),
+        ("map = \"sky.exr\"\nintensity = -1", "scene.toml:5: \"intensity\" must be a number from 0 to 1000000, not -1"),
+        (
+            "radiance = 1\ncamera_visible = false\nilluminates = false",
+            "scene.toml:3: an environment that neither lights nor is visible to the camera does nothing",
+        ),
+        (
+            "map = \"sky.exr\"",
+            "scene.toml:4: \"sky.exr\" has a radiance of 2e6, which times \"intensity\" 1 is more than 1e6: an \"intensity\" \
+             of at most 5.000e-1 is possible",
+        ),
+        ("map = \"nan.exr\"", "nan.exr: pixel (1, 1), counted from the top left, is not finite: [NaN, 1.0, 1.0]"),
+        ("map = \"inf.exr\"", "inf.exr: pixel (1, 1), counted from the top left, is not finite: [1.0, 1.0, inf]"),
+        ("map = \"cut.hdr\"", "cut.hdr: is truncated: it ends before its last pixel"),
+        (
+            "map = \"sky.png\"",
+            "sky.png: has eight or sixteen bits per channel, which cannot hold the radiance of an environment: Radiance (.hdr) \
+             or OpenEXR (.exr) is needed",
+        ),
+    ];
+    for (lines, expected) in cases {
+        assert_eq!(folder.refusal(&folder.write("scene.toml", under(lines))), expected);
+    }
 }

@@ -3,11 +3,23 @@
 use gonio_accel::{Geometry, Mesh};
 use gonio_kernel::{F32x8, Vec3};
 use gonio_tracer::scene::Scene;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A file of the repository.
 pub(crate) fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// A file or folder of the test data, which is not part of the repository; says so in one line if it is not there.
+pub(crate) fn data(path: &str) -> Option<PathBuf> {
+    let found = std::env::var_os("GONIO_DATA").map_or_else(|| repository("../shared/data"), PathBuf::from).join(path);
+    if !found.exists() {
+        println!("{path}: not there ({}), not run", found.display());
+    }
+    found.exists().then_some(found)
 }
 
 /// The shipped Cornell box, `size` pixels wide and high.
@@ -17,6 +29,82 @@ pub(crate) fn cornell_box(size: u32, spp: u32) -> Scene {
     scene.film.height = size;
     scene.film.spp = spp;
     scene
+}
+
+/// A folder of its own for one test, removed at its end.
+pub(crate) struct Folder(PathBuf);
+
+impl Folder {
+    pub(crate) fn new() -> Self {
+        static COUNTER: AtomicU32 = AtomicU32::new(0);
+        let number = COUNTER.fetch_add(1, Ordering::Relaxed);
+        let path = std::env::temp_dir().join(format!("gonio-tests-{}-{number}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    /// Writes a file, and the folders it lies in.
+    pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(&path, content).unwrap();
+        path
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// The refusal of a file, without the folder's name.
+    pub(crate) fn refusal(&self, path: &Path) -> String {
+        let error = Scene::load(path).expect_err("this should have been refused");
+        self.strip(&error.to_string())
+    }
+
+    /// A text without the folder's name.
+    pub(crate) fn strip(&self, text: &str) -> String {
+        text.replace(&format!("{}/", self.0.display()), "")
+    }
+
+    /// The warnings of a scene, without the folder's name.
+    pub(crate) fn warnings(&self, scene: &Scene) -> Vec<String> {
+        scene.warnings.iter().map(|warning| self.strip(warning)).collect()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Mean and variance (n − 1) of the same quantity over seeds.
+pub(crate) struct Moments {
+    pub(crate) mean: f64,
+    pub(crate) variance: f64,
+}
+
+/// The moments of at least two values.
+pub(crate) fn moments(values: impl Iterator<Item = f64> + Clone) -> Moments {
+    let n = values.clone().count() as f64;
+    let mean = values.clone().sum::<f64>() / n;
+    Moments { mean, variance: values.map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0) }
+}
+
+/// Two-sided p-value of Welch's t-test for two samples of n.
+pub(crate) fn welch(a: &Moments, b: &Moments, n: f64) -> f64 {
+    let (va, vb) = (a.variance / n, b.variance / n);
+    if va + vb == 0.0 {
+        return if a.mean == b.mean { 1.0 } else { 0.0 };
+    }
+    let freedom = (va + vb).powi(2) / ((va * va + vb * vb) / (n - 1.0));
+    let t = (a.mean - b.mean).abs() / (va + vb).sqrt();
+    student(t, freedom)
+}
+
+/// Two-sided p-value of Student's t ≥ 0.
+pub(crate) fn student(t: f64, freedom: f64) -> f64 {
+    2.0 * StudentsT::new(0.0, 1.0, freedom).expect("positive degrees of freedom").sf(t)
 }
 
 /// SplitMix64 (Steele, Lea & Flood 2014): small, seeded, good enough to place test rays.

@@ -44,8 +44,7 @@ pub fn atan2_turns<R: Real>(y: R, x: R) -> R {
 }
 
 /// (atan t − t)/t³ as a polynomial in t², |t| ≤ √2 − 1.
-const ATAN_SINGLE: [f64; 4] =
-    [8.053_744_495_38e-2, -1.387_768_560_32e-1, 1.997_771_064_78e-1, -3.333_294_915_39e-1];
+const ATAN_SINGLE: [f64; 4] = [8.053_744_495_38e-2, -1.387_768_560_32e-1, 1.997_771_064_78e-1, -3.333_294_915_39e-1];
 /// The same as a quotient.
 const ATAN_DOUBLE: [[f64; 6]; 2] = [
     [

@@ -309,7 +309,7 @@ fn check(picture: &Picture) -> Result<(), String> {
     Ok(())
 }
 
-fn failure(path: &Path, message: impl Into<String>) -> ImageError {
+pub(crate) fn failure(path: &Path, message: impl Into<String>) -> ImageError {
     ImageError { path: path.to_path_buf(), message: message.into() }
 }
 

@@ -27,8 +27,11 @@ compile_error!(
      or with RUSTFLAGS=\"-C target-cpu=x86-64-v3\""
 );
 
+mod alias;
 mod backend;
+mod environment;
 mod film;
+pub mod hdr;
 pub mod image;
 mod layers;
 mod light;
@@ -47,6 +50,7 @@ pub mod world;
 
 pub use backend::{Backend, BackendError};
 pub use layers::Layers;
+pub use light::Techniques;
 pub use material::constant_surface;
 pub use plan::Plan;
 pub use render::{Crop, Pass, Progress, RenderSettings, Rendering, render};

@@ -1,10 +1,13 @@
-//! Lights: emitting triangles and the constant environment, and the choice between them.
+//! Lights: emitting triangles and the environment, and the choice between them.
 //!
 //! A triangle is chosen with probability proportional to its power (area times luminance), so the density of a point is
 //! luminance / Σ(area · luminance), the same on all triangles of a material. If there are both kinds of light, each gets
-//! half of the samples; an absent kind has probability exactly 0. The environment is sampled by cosine about the shading
-//! normal.
+//! half of the samples; an absent kind has probability exactly 0. A constant environment is sampled by cosine about the
+//! shading normal, a map by its luminance over the whole sphere: samples below the horizon are wasted.
 
+use crate::alias::{alias_table, pick};
+use crate::environment::EnvironmentMap;
+use crate::scene::{Environment, Sky};
 use gonio_kernel::{F32x8, Real, Rgb, U32x8, Vec3, each_lane};
 
 /// An emitting triangle.
@@ -23,7 +26,18 @@ pub(crate) struct Lights {
     alias: Vec<(f32, u32)>,
     /// Σ area · luminance.
     power: f64,
-    environment: Option<Rgb<f32>>,
+    sky: Option<PreparedSky>,
+    camera_sees_sky: bool,
+    sky_illuminates: bool,
+}
+
+/// What lies behind everything, unless it is black.
+#[derive(Clone, Debug)]
+pub(crate) enum PreparedSky {
+    /// The same radiance from everywhere.
+    Constant(Rgb<f32>),
+    /// A picture.
+    Map(Box<EnvironmentMap>),
 }
 
 /// Eight emitters side by side.
@@ -34,21 +48,45 @@ pub(crate) struct Emitters {
 }
 
 impl Lights {
-    /// Lights of positive luminance; zero radiance means no environment.
-    pub(crate) fn new(emitters: Vec<Emitter>, environment: Rgb<f32>) -> Self {
+    /// Lights of positive luminance; a black environment is none.
+    pub(crate) fn new(emitters: Vec<Emitter>, environment: &Environment) -> Self {
         let weights: Vec<f64> = emitters.iter().map(|e| e.area() * f64::from(e.radiance.luminance())).collect();
-        let environment = (environment.largest() > 0.0).then_some(environment);
-        Self { alias: alias_table(&weights), power: weights.iter().sum(), emitters, environment }
+        let sky = match &environment.sky {
+            Sky::Constant(radiance) => (radiance.largest() > 0.0).then_some(PreparedSky::Constant(*radiance)),
+            Sky::Map(map) => EnvironmentMap::new(&map.picture, map.rotation, map.intensity)
+                .map(|map| PreparedSky::Map(Box::new(map))),
+        };
+        Self {
+            alias: alias_table(&weights),
+            power: weights.iter().sum(),
+            emitters,
+            sky,
+            camera_sees_sky: environment.camera_visible,
+            sky_illuminates: environment.illuminates,
+        }
     }
 
-    /// The radiance of the environment, black if there is none.
-    pub(crate) fn environment(&self) -> Rgb<f32> {
-        self.environment.unwrap_or(Rgb::zero())
+    /// Whether the environment does anything.
+    pub(crate) fn has_sky(&self) -> bool {
+        self.sky.is_some() && (self.camera_sees_sky || self.sky_illuminates)
+    }
+
+    /// What paths see that leave the world after so many scattering events; `None` if it is black for them.
+    #[inline(always)]
+    pub(crate) fn sky(&self, depth: u32) -> Option<&PreparedSky> {
+        let seen = if depth == 0 { self.camera_sees_sky } else { self.sky_illuminates };
+        self.sky.as_ref().filter(|_| seen)
+    }
+
+    /// The environment as a light; `None` if it is black or only seen by the camera.
+    #[inline(always)]
+    pub(crate) fn shining_sky(&self) -> Option<&PreparedSky> {
+        self.sky.as_ref().filter(|_| self.sky_illuminates)
     }
 
     /// Probability of asking the environment.
     pub(crate) fn environment_probability(&self) -> f32 {
-        match (self.environment, self.emitters.is_empty()) {
+        match (self.shining_sky(), self.emitters.is_empty()) {
             (None, _) => 0.0,
             (Some(_), true) => 1.0,
             (Some(_), false) => 0.5,
@@ -68,7 +106,7 @@ impl Lights {
     /// Eight emitters for two random words each.
     #[inline(always)]
     pub(crate) fn pick(&self, place: U32x8, toss: F32x8) -> Emitters {
-        let emitters = each_lane(|lane| &self.emitters[self.slot(place.lane(lane), toss.lane(lane))]);
+        let emitters = each_lane(|lane| &self.emitters[pick(&self.alias, place.lane(lane), toss.lane(lane))]);
         let corner = |c: usize| Vec3::from_lanes(|l| emitters[l].corners[c]);
         Emitters {
             corners: [corner(0), corner(1), corner(2)],
@@ -82,16 +120,6 @@ impl Lights {
     }
 }
 
-impl Lights {
-    /// An emitter by its power: a 32-bit word times the count gives every slot its share to 2⁻³² of the whole.
-    #[inline(always)]
-    fn slot(&self, place: u32, toss: f32) -> usize {
-        let slot = ((u64::from(place) * self.alias.len() as u64) >> 32) as usize;
-        let (keep, other) = self.alias[slot];
-        if toss < keep { slot } else { other as usize }
-    }
-}
-
 impl Emitter {
     fn area(&self) -> f64 {
         let [a, b, c] = self.corners.map(|v| Vec3::new(f64::from(v.x), f64::from(v.y), f64::from(v.z)));
@@ -99,47 +127,35 @@ impl Emitter {
     }
 }
 
-/// Vose's alias method (1991): slot i keeps itself with the first probability and else yields the second index.
-fn alias_table(weights: &[f64]) -> Vec<(f32, u32)> {
-    let n = weights.len();
-    let sum: f64 = weights.iter().sum();
-    let mut scaled: Vec<f64> = weights.iter().map(|w| w * n as f64 / sum).collect();
-    let mut table: Vec<(f32, u32)> = (0..n as u32).map(|i| (1.0, i)).collect();
-    let (mut small, mut large): (Vec<usize>, Vec<usize>) = (0..n).partition(|&i| scaled[i] < 1.0);
-    while let (Some(s), Some(&l)) = (small.pop(), large.last()) {
-        table[s] = (scaled[s] as f32, l as u32);
-        scaled[l] -= 1.0 - scaled[s];
-        if scaled[l] < 1.0 {
-            large.pop();
-            small.push(l);
+/// Which ways of finding light take part. All give the same picture but for noise, which is what this is for: a wrong
+/// density makes them differ.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Techniques {
+    /// Both, weighted by the power heuristic.
+    #[default]
+    Both,
+    /// Lights are asked; scattering finds light only behind discrete events and the camera.
+    Lights,
+    /// Scattering alone.
+    Scattering,
+}
+
+impl Techniques {
+    /// The weight of light that was found with density `own` and that the other technique finds with density `other`;
+    /// `alone` is the one that finds light this way when it is the only one.
+    #[inline(always)]
+    pub(crate) fn weight(self, alone: Self, own: F32x8, other: F32x8) -> F32x8 {
+        match self {
+            Self::Both => power_heuristic(own, other),
+            only => F32x8::splat(if only == alone { 1.0 } else { 0.0 }),
         }
     }
-    table
 }
 
 /// The power heuristic with exponent 2 (Veach & Guibas 1995): the weight of a sample of density `a` that could also have
 /// been drawn with density `b`. Written as a ratio, so that huge densities do not overflow; 1 where b is 0.
 #[inline(always)]
-pub(crate) fn power_heuristic(a: F32x8, b: F32x8) -> F32x8 {
+fn power_heuristic(a: F32x8, b: F32x8) -> F32x8 {
     let r = b / a;
     r.mul_add(r, F32x8::ONE).recip()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_alias_table_reproduces_the_weights() {
-        let weights = [1.0, 0.25, 7.0, 3.5, 0.0, 2.0];
-        let table = alias_table(&weights);
-        let mut got = [0.0; 6];
-        for (i, &(keep, other)) in table.iter().enumerate() {
-            got[i] += f64::from(keep) / 6.0;
-            got[other as usize] += (1.0 - f64::from(keep)) / 6.0;
-        }
-        for (g, w) in got.iter().zip(weights) {
-            assert!((g - w / 13.75).abs() < 1e-7, "{got:?}");
-        }
-    }
 }

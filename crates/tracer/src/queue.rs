@@ -14,7 +14,8 @@ pub(crate) struct Paths {
     pub(crate) throughput: Rgb<F32x8>,
     /// Density with which scattering chose this ray; 0 after the camera or a discrete event.
     pub(crate) pdf: F32x8,
-    /// Density with which a light sample would have chosen this direction in the environment.
+    /// Density with which a light sample would have chosen this direction in a constant environment; a map is asked itself,
+    /// when the path has left the world.
     pub(crate) pdf_environment: F32x8,
     /// Which path of the tile.
     pub(crate) path: U32x8,

@@ -8,6 +8,7 @@
 use crate::film::{self, Pixel};
 use crate::image::Picture;
 use crate::layers::{DepthUnit, FirstHit, LayerSums, Layers};
+use crate::light::Techniques;
 use crate::plan::Plan;
 use crate::queue::{Batch, Order, Paths, Queue, ShadowQueue};
 use crate::sampler::{Purpose, Sampler};
@@ -64,6 +65,8 @@ pub struct RenderSettings {
     pub layers: bool,
     /// Which effects to look at; at least the world's own plan.
     pub plan: Plan,
+    /// Which ways of finding light take part; anything but both is for comparing them.
+    pub techniques: Techniques,
 }
 
 impl RenderSettings {
@@ -78,6 +81,7 @@ impl RenderSettings {
             crop: None,
             layers: false,
             plan: world.plan(),
+            techniques: Techniques::Both,
         }
     }
 }
@@ -162,6 +166,7 @@ pub fn render(
         sampler: Sampler::new(settings.seed),
         max_depth: settings.max_depth,
         russian_roulette: settings.russian_roulette,
+        techniques: settings.techniques,
     };
     let per_sample = film.crop.pixels().max(1);
     let mut length = (FIRST_PASS / per_sample).clamp(1, QUEUE as u64 / u64::from(TILE * TILE)) as u32;
@@ -374,7 +379,7 @@ impl TileWorker {
             let first: &mut [FirstHit] = if depth == 0 { &mut self.first } else { &mut [] };
             if ctx.plan.environment {
                 for lanes in self.order.range(0, 1).chunks(F32x8::LANES) {
-                    shade::miss(ctx, &Batch::new(lanes, &self.queue, &self.hits), &mut gathered);
+                    shade::miss(ctx, depth, &Batch::new(lanes, &self.queue, &self.hits), &mut gathered);
                 }
             }
             let mut from = 0;

@@ -11,8 +11,9 @@
 //! | 0 | camera: place in the pixel (2), lens (2) |
 //! | 1 | camera: time (1), free (3) |
 //! | 8 + 8·bounce + 0 | scattering: choice of lobe (1), direction (2), Russian roulette (1) |
-//! | 8 + 8·bounce + 1 | light: strategy and emitter (2), place (2) |
-//! | 8 + 8·bounce + 2 … 7 | free |
+//! | 8 + 8·bounce + 1 | light: strategy and emitter (2), place (2); for an environment map strategy (1), alias (2) |
+//! | 8 + 8·bounce + 2 | environment map: row and cell (2), place (2) |
+//! | 8 + 8·bounce + 3 … 7 | free |
 
 use gonio_kernel::{F32x8, U32x8};
 
@@ -25,6 +26,8 @@ pub(crate) enum Purpose {
     Scatter,
     /// Which point of which light is asked.
     Light,
+    /// Which direction of an environment map is asked.
+    Environment,
 }
 
 /// The numbers of one seed.
@@ -50,6 +53,7 @@ impl Sampler {
             Purpose::Camera => 0,
             Purpose::Scatter => 8 + 8 * bounce,
             Purpose::Light => 9 + 8 * bounce,
+            Purpose::Environment => 10 + 8 * bounce,
         };
         // The high half of the seed moves the sample counter by a hash of itself, so that every seed is its own sequence.
         let shift = self.seed[1].wrapping_mul(0x9e37_79b9) ^ (self.seed[1] >> 15);

@@ -4,13 +4,14 @@
 //! power heuristic on both sides; after the camera or a discrete event only scattering can reach it, with weight 1.
 //! Per vertex the order of additions is: emission, then the answer of the shadow ray.
 
+use crate::environment::EnvironmentMap;
 use crate::layers::FirstHit;
-use crate::light::power_heuristic;
+use crate::light::{PreparedSky, Techniques};
 use crate::material::lane_surface;
 use crate::plan::Plan;
 use crate::point::{ShadingPoints, SurfacePoint};
 use crate::queue::{Batch, Paths, Queue, ShadowQueue};
-use crate::sampler::{Purpose, Sampler};
+use crate::sampler::{Purpose, Random4, Sampler};
 use crate::world::{World, splat_rgb};
 use gonio_accel::Ray8;
 use gonio_kernel::lobe::Lobe;
@@ -33,6 +34,7 @@ pub(crate) struct Context<'a> {
     pub(crate) sampler: Sampler,
     pub(crate) max_depth: u32,
     pub(crate) russian_roulette: bool,
+    pub(crate) techniques: Techniques,
 }
 
 /// The gathered radiance of a tile's paths.
@@ -81,17 +83,26 @@ impl Incoming {
 
     /// The weight of light found by scattering, which a light sample would have found with density `pdf_light`.
     #[inline(always)]
-    fn weight(&self, pdf_light: F32x8) -> F32x8 {
-        F32x8::select(self.pdf.gt(F32x8::ZERO), power_heuristic(self.pdf, pdf_light), F32x8::ONE)
+    fn weight(&self, techniques: Techniques, pdf_light: F32x8) -> F32x8 {
+        let weight = techniques.weight(Techniques::Scattering, self.pdf, pdf_light);
+        F32x8::select(self.pdf.gt(F32x8::ZERO), weight, F32x8::ONE)
     }
 }
 
-/// Paths that left the world receive the environment.
+/// Paths that left the world after `depth` scattering events receive the environment.
 #[inline(always)]
-pub(crate) fn miss(ctx: &Context, batch: &Batch, gathered: &mut Gathered) {
+pub(crate) fn miss(ctx: &Context, depth: u32, batch: &Batch, gathered: &mut Gathered) {
+    let lights = &ctx.world.lights;
     let incoming = Incoming::new(batch);
-    let weight = incoming.weight(batch.path(|p| &p.pdf_environment));
-    let radiance = splat_rgb(ctx.world.lights.environment());
+    let (radiance, pdf) = match lights.sky(depth) {
+        None => return,
+        Some(PreparedSky::Constant(radiance)) => (splat_rgb(*radiance), batch.path(|p| &p.pdf_environment)),
+        Some(PreparedSky::Map(map)) => {
+            let seen = map.at(incoming.dir);
+            (seen.radiance, seen.pdf * F32x8::splat(lights.environment_probability()))
+        }
+    };
+    let weight = incoming.weight(ctx.techniques, pdf);
     gathered.add(&incoming.path, batch.live, incoming.throughput * radiance * weight);
 }
 
@@ -148,7 +159,7 @@ pub(crate) fn hit(
     let origin = points.point.off_plane(points.normal);
 
     let lights = &ctx.world.lights;
-    if ctx.plan.area_lights || ctx.plan.environment {
+    if (ctx.plan.area_lights || ctx.plan.environment) && ctx.techniques != Techniques::Scattering {
         let u = ctx.sampler.draw(incoming.pixel, incoming.sample, depth, Purpose::Light);
         let toss = u.unit(0);
         let p_environment = F32x8::splat(lights.environment_probability());
@@ -161,13 +172,17 @@ pub(crate) fn hit(
                 continue;
             }
             let place = [u.unit(2), u.unit(3)];
-            let asked = if kind {
-                ask_sky(ctx, &points, place, p_environment)
-            } else {
-                ask_emitter(ctx, origin, u.0[1], rest, place)
+            let asked = match (kind, lights.shining_sky()) {
+                (false, _) => ask_emitter(ctx, origin, u.0[1], rest, place),
+                (true, None) => continue,
+                (true, Some(PreparedSky::Constant(sky))) => ask_sky(*sky, &points, place, p_environment),
+                (true, Some(PreparedSky::Map(map))) => {
+                    let place = ctx.sampler.draw(incoming.pixel, incoming.sample, depth, Purpose::Environment);
+                    ask_map(map, &u, &place, p_environment)
+                }
             };
             let value = closure.eval(points.frame.to_local(asked.wi));
-            let weight = power_heuristic(asked.pdf, value.pdf) / asked.pdf;
+            let weight = ctx.techniques.weight(Techniques::Lights, asked.pdf, value.pdf) / asked.pdf;
             let arriving = incoming.throughput * value.f_cos * asked.radiance * weight;
             let above = points.normal.dot(asked.wi).gt(F32x8::ZERO);
             let mask = mask & asked.mask & above & arriving.largest().gt(F32x8::ZERO);
@@ -224,7 +239,7 @@ fn receive_emission(
     let pdf_area = emission.luminance() * F32x8::splat(ctx.world.lights.pdf_area_per_luminance());
     let pdf_light = pdf_area * points.t * points.t / points.cos_geometric;
     let mask = batch.live & points.front & emission.largest().gt(F32x8::ZERO);
-    gathered.add(&incoming.path, mask, incoming.throughput * emission * incoming.weight(pdf_light));
+    gathered.add(&incoming.path, mask, incoming.throughput * emission * incoming.weight(ctx.techniques, pdf_light));
 }
 
 /// A direction in which light is asked for.
@@ -236,16 +251,30 @@ struct Asked {
     mask: Mask8,
 }
 
-/// A cosine-distributed direction of the environment.
+/// A cosine-distributed direction of a constant environment.
 #[inline(always)]
-fn ask_sky(ctx: &Context, points: &ShadingPoints, place: [F32x8; 2], probability: F32x8) -> Asked {
+fn ask_sky(radiance: Rgb<f32>, points: &ShadingPoints, place: [F32x8; 2], probability: F32x8) -> Asked {
     let local = sample_cosine_hemisphere(place);
     Asked {
         wi: points.frame.to_world(local),
         pdf: pdf_cosine_hemisphere(local) * probability,
-        radiance: splat_rgb(ctx.world.lights.environment()),
+        radiance: splat_rgb(radiance),
         t_max: F32x8::splat(f32::INFINITY),
         mask: Mask8::splat(true),
+    }
+}
+
+/// A direction of a map by its luminance; `toss` are the numbers of the choice between lights, of which it uses the free ones.
+#[inline(always)]
+fn ask_map(map: &EnvironmentMap, toss: &Random4, place: &Random4, probability: F32x8) -> Asked {
+    let wi = map.sample(place, [toss.0[1], toss.0[2]]);
+    let seen = map.at(wi);
+    Asked {
+        wi,
+        pdf: seen.pdf * probability,
+        radiance: seen.radiance,
+        t_max: F32x8::splat(f32::INFINITY),
+        mask: seen.pdf.gt(F32x8::ZERO),
     }
 }
 
@@ -304,8 +333,10 @@ fn scatter(
         throughput = throughput * q.recip();
     }
     if alive.any() {
-        let pdf_environment = if ctx.plan.environment {
-            let p = F32x8::splat(ctx.world.lights.environment_probability());
+        let lights = &ctx.world.lights;
+        let pdf_environment = if ctx.plan.environment && matches!(lights.shining_sky(), Some(PreparedSky::Constant(_)))
+        {
+            let p = F32x8::splat(lights.environment_probability());
             pdf_cosine_hemisphere(sample.wi) * p
         } else {
             F32x8::ZERO

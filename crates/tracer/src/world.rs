@@ -65,7 +65,7 @@ impl World {
         let (materials, order) = PreparedMaterial::prepare(scene);
         let mut plan = Plan {
             area_lights: false,
-            environment: scene.environment.largest() > 0.0,
+            environment: false,
             textures: materials.iter().any(|m| m.textured),
             smooth_normals: scene.meshes.iter().any(|m| m.normals.is_some()),
             tangents: false,
@@ -111,7 +111,8 @@ impl World {
             let radiance = world.materials[t.material as usize].emission;
             (radiance.luminance() > 0.0).then_some(Emitter { corners: t.corners, normal: t.normal, radiance })
         });
-        world.lights = Lights::new(emitters.collect(), scene.environment);
+        world.lights = Lights::new(emitters.collect(), &scene.environment);
+        world.plan.environment = world.lights.has_sky();
         world.plan.area_lights = world.triangles.iter().any(|t| world.materials[t.material as usize].emits());
         Ok(world)
     }

@@ -10,8 +10,8 @@ use super::mtl::Library;
 use super::obj::{self, ObjFile};
 use super::textures::Textures;
 use super::{
-    Camera, Color, FilmSettings, Instance, IntegratorSettings, LobeSpec, Material, Mesh, Model, Scene, SceneError,
-    paths,
+    Camera, Color, Environment, FilmSettings, Instance, IntegratorSettings, LobeSpec, Material, Mesh, Model, Scene,
+    SceneError, paths,
 };
 
 /// Largest number of materials: an index fits sixteen bits.
@@ -253,7 +253,7 @@ impl Builder {
     }
 
     /// Says something once, however often the file is placed.
-    fn warn(&mut self, text: String) {
+    pub(super) fn warn(&mut self, text: String) {
         if !self.warnings.contains(&text) {
             self.warnings.push(text);
         }
@@ -265,12 +265,16 @@ impl Builder {
         film: FilmSettings,
         camera: Camera,
         integrator: IntegratorSettings,
-        environment: Rgb<f32>,
+        environment: Environment,
     ) -> Scene {
         self.warnings.extend(self.libraries.into_iter().flat_map(|(_, library)| library.into_warnings()));
         let shines = |mesh: &Mesh| mesh.materials.iter().any(|&m| self.materials[m as usize].emission.largest() > 0.0);
-        if environment.largest() <= 0.0 && !self.meshes.iter().any(shines) {
-            self.warnings.push("the scene has no light: the picture will be black".to_owned());
+        if !self.meshes.iter().any(shines) {
+            if environment.is_dark() {
+                self.warnings.push("the scene has no light: the picture will be black".to_owned());
+            } else if !environment.illuminates {
+                self.warnings.push("the scene has no light: only its background will be seen".to_owned());
+            }
         }
         Scene {
             film,

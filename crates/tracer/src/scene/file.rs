@@ -2,13 +2,11 @@
 
 use std::path::Path;
 
-use gonio_kernel::Rgb;
-
 use super::build::{Assignment, Builder};
 use super::camera::CameraSpec;
 use super::document::{Document, Table, Value};
 use super::error::quoted;
-use super::{FilmSettings, IntegratorSettings, MAX_RADIANCE, Scene, SceneError, material, paths, transform};
+use super::{FilmSettings, IntegratorSettings, Scene, SceneError, environment, material, paths, transform};
 
 impl Default for FilmSettings {
     fn default() -> Self {
@@ -32,12 +30,13 @@ pub(super) fn read(text: &str, path: &Path) -> Result<Scene, SceneError> {
     let camera_table = section("camera")?;
     let camera = camera(camera_table.as_ref())?;
     let integrator = integrator(section("integrator")?)?;
-    let environment = environment(section("environment")?)?;
+    let environment = section("environment")?;
     let materials = section("materials")?;
     let meshes = root.get("meshes");
     root.finish()?;
 
     let mut builder = Builder::default();
+    let environment = environment::read(environment, &mut |text| builder.warn(text))?;
     for (name, _, value) in materials.iter().flat_map(Table::entries) {
         let table = value.table(&format!("material \"{name}\""))?;
         let material = material::read(name, &table, Some(&mut builder.textures))?;
@@ -102,14 +101,6 @@ fn integrator(table: Option<Table<'_>>) -> Result<IntegratorSettings, SceneError
     settings.seed = or(table.get("seed"), settings.seed, |v| v.integer(0..=u64::MAX))?;
     table.finish()?;
     Ok(settings)
-}
-
-fn environment(table: Option<Table<'_>>) -> Result<Rgb<f32>, SceneError> {
-    let dark = Rgb::splat(0.0);
-    let Some(table) = table else { return Ok(dark) };
-    let radiance = or(table.get("radiance"), dark, |v| v.rgb(0.0..=MAX_RADIANCE))?;
-    table.finish()?;
-    Ok(radiance)
 }
 
 fn mesh(value: &Value<'_>, builder: &mut Builder) -> Result<(), SceneError> {

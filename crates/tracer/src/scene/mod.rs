@@ -16,6 +16,7 @@ use crate::texture::Texture;
 mod build;
 mod camera;
 mod document;
+mod environment;
 mod error;
 mod file;
 mod material;
@@ -25,6 +26,7 @@ mod paths;
 mod textures;
 mod transform;
 
+pub use environment::{Environment, Sky, SkyMap};
 pub use error::SceneError;
 
 /// Smallest microfacet width: below it, f32 cannot resolve the lobe, and a mirror is what is meant.
@@ -61,7 +63,7 @@ impl Scene {
         let film = FilmSettings::default();
         let aspect = f64::from(film.width) / f64::from(film.height);
         let camera = camera::CameraSpec::default().complete(builder.bounds, aspect).map_err(blame)?;
-        Ok(builder.finish(film, camera, IntegratorSettings::default(), Rgb::splat(1.0)))
+        Ok(builder.finish(film, camera, IntegratorSettings::default(), Environment::constant(Rgb::splat(1.0))))
     }
 }
 
@@ -82,8 +84,8 @@ pub struct Scene {
     pub meshes: Vec<Mesh>,
     /// Meshes placed in the world. Never empty.
     pub instances: Vec<Instance>,
-    /// Radiance of the constant environment, linear Rec. 709, at least 0; 0 means there is none.
-    pub environment: Rgb<f32>,
+    /// What lies behind everything.
+    pub environment: Environment,
     /// What was loaded differently from how it was written: one sentence each.
     pub warnings: Vec<String>,
 }

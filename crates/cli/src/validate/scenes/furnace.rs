@@ -5,7 +5,7 @@
 
 use anyhow::{Context, Result};
 use gonio_accel::Intersect;
-use gonio_tracer::scene::{Color, Model, Scene};
+use gonio_tracer::scene::{Color, Model, Scene, Sky};
 use gonio_tracer::{Backend, Plan, RenderSettings, Rendering, World, render};
 use std::fmt;
 use std::ops::ControlFlow;
@@ -27,7 +27,7 @@ pub(super) struct Furnace {
     pub(super) noisy: bool,
     law: Law,
     /// Name and text; the scene file comes first.
-    files: [(&'static str, &'static str); 2],
+    files: &'static [(&'static str, &'static str)],
 }
 
 /// Where the answer comes from.
@@ -40,41 +40,48 @@ enum Law {
 }
 
 /// All of them.
-pub(super) const FURNACES: [Furnace; 5] = [
+pub(super) const FURNACES: [Furnace; 6] = [
     Furnace {
         name: "furnace-box",
         size: 64,
         noisy: true,
         law: Law::ClosedRoom,
-        files: [shipped!("furnace-box.toml"), shipped!("furnace-box.obj")],
+        files: &[shipped!("furnace-box.toml"), shipped!("furnace-box.obj")],
     },
     Furnace {
         name: "furnace-mix",
         size: 64,
         noisy: true,
         law: Law::ClosedRoom,
-        files: [shipped!("furnace-mix.toml"), shipped!("furnace-box.obj")],
+        files: &[shipped!("furnace-mix.toml"), shipped!("furnace-box.obj")],
     },
     Furnace {
         name: "furnace-white",
         size: 64,
         noisy: true,
         law: Law::SkyTimesAlbedo,
-        files: [shipped!("furnace-white.toml"), shipped!("furnace-object.obj")],
+        files: &[shipped!("furnace-white.toml"), shipped!("furnace-object.obj")],
+    },
+    Furnace {
+        name: "furnace-map",
+        size: 64,
+        noisy: true,
+        law: Law::SkyTimesAlbedo,
+        files: &[shipped!("furnace-map.toml"), shipped!("furnace-object.obj"), shipped!("furnace-map.hdr")],
     },
     Furnace {
         name: "furnace-mirror",
         size: 64,
         noisy: false,
         law: Law::SkyTimesAlbedo,
-        files: [shipped!("furnace-mirror.toml"), shipped!("furnace-object.obj")],
+        files: &[shipped!("furnace-mirror.toml"), shipped!("furnace-object.obj")],
     },
     Furnace {
         name: "furnace-grey",
         size: 64,
         noisy: true,
         law: Law::SkyTimesAlbedo,
-        files: [shipped!("furnace-grey.toml"), shipped!("furnace-box.obj")],
+        files: &[shipped!("furnace-grey.toml"), shipped!("furnace-box.obj")],
     },
 ];
 
@@ -119,7 +126,7 @@ impl Furnace {
     /// Writes the files to a folder and reads the scene.
     pub(super) fn unpack(&self, folder: &Path) -> Result<Scene> {
         std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
-        for (name, text) in &self.files {
+        for (name, text) in self.files {
             let path = folder.join(name);
             std::fs::write(&path, text).with_context(|| format!("{}: cannot be written", path.display()))?;
         }
@@ -151,7 +158,10 @@ impl Furnace {
         }
         let light: [f32; 3] = match self.law {
             Law::ClosedRoom => material.emission.into(),
-            Law::SkyTimesAlbedo => scene.environment.into(),
+            Law::SkyTimesAlbedo => match &scene.environment.sky {
+                Sky::Constant(radiance) => (*radiance).into(),
+                Sky::Map(map) => map.picture.rgb[0].map(|x| x * map.intensity),
+            },
         };
         std::array::from_fn(|c| {
             let (a, light) = (albedo[c], f64::from(light[c]));
