@@ -133,6 +133,7 @@ fn formula(folder: &Folder) -> std::path::PathBuf {
 fn a_scene_under_a_map_agrees_with_mitsuba() {
     let folder = Folder::new();
     let mut scene = under(&formula(&folder), &folder);
+    scene.film.spp = 32;
     compare("environment_formula", &scene).unwrap();
     // One degree more, and the map a hundredth brighter: both are seen.
     let Sky::Map(map) = &mut scene.environment.sky else { panic!("the scene has a map") };
