@@ -125,7 +125,8 @@ fn formula(folder: &Folder) -> std::path::PathBuf {
     };
     let rgb = (0..12).flat_map(|row| (0..24).map(move |column| texel(row, column))).collect();
     let path = folder.path().join("formula.exr");
-    write_exr(&path, &Picture { width: 24, height: 12, rgb }, None, &Metadata::default()).expect("the folder takes files");
+    write_exr(&path, &Picture { width: 24, height: 12, rgb }, None, &Metadata::default())
+        .expect("the folder takes files");
     path
 }
 

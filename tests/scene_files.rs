@@ -1,7 +1,6 @@
 //! Scene files, good and bad: what loads, what it becomes, and the very words of each refusal.
 
 use std::fs;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::support::{Folder, data};
@@ -438,7 +437,7 @@ fn pictures_that_cannot_be_written_say_so_and_leave_nothing_behind() {
     let taken = folder.path().join("taken.png"); // a folder of that name cannot be replaced by a file
     fs::create_dir(&taken).unwrap();
     assert!(write_png(&taken, &picture, 0.0).is_err());
-    assert_eq!(fs::read_dir(&folder.path()).unwrap().count(), 1);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
 /// A scene of one triangle under `[environment]` with these lines, which begin at line 4.

@@ -56,7 +56,7 @@ mod tests {
         weights[7] = 1e-12;
         weights[700] = 3.0;
         let table = alias_table(&weights);
-        for place in (0..1000_u64).map(|slot| (((slot << 32) + 999) / 1000) as u32) {
+        for place in (0..1000_u64).map(|slot| (slot << 32).div_ceil(1000) as u32) {
             for toss in [0.0, 0.5, 1.0 - f32::EPSILON / 2.0] {
                 assert!(weights[pick(&table, place, toss)] > 0.0);
             }

@@ -18,7 +18,11 @@ fn picture(width: u32, height: u32, f: impl Fn(u32, u32, u32) -> f32) -> Arc<Pic
 fn varied(width: u32, height: u32, seed: u32) -> Arc<Picture> {
     picture(width, height, |x, y, c| {
         let word = crate::sampler::hash2(crate::sampler::hash2(x + 1000 * y, c), seed);
-        if crate::sampler::hash2(x + 1000 * y, seed) % 4 == 0 { 0.0 } else { 10_f32.powf(word as f32 / 1e9 - 2.0) }
+        if crate::sampler::hash2(x + 1000 * y, seed).is_multiple_of(4) {
+            0.0
+        } else {
+            10_f32.powf(word as f32 / 1e9 - 2.0)
+        }
     })
 }
 
