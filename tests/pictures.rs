@@ -63,7 +63,7 @@ fn under_a_map() -> Scene {
 fn threads_backends_and_plans_never_change_a_picture() {
     for scene in [cornell_box(48, 8), varied(), under_a_map()] {
         let expected = rendered(&scene, Backend::Obvhs, |s| s.threads = 1).stats.film_hash;
-        for backend in Backend::ALL {
+        for backend in Backend::ALL.into_iter().filter(|backend| backend.is_exact()) {
             for threads in [1, 2, 3] {
                 let hash = rendered(&scene, backend, |s| s.threads = threads).stats.film_hash;
                 assert_eq!(hash, expected, "{backend}, {threads} threads");

@@ -6,6 +6,7 @@
 mod cargo;
 mod ci;
 mod elf;
+mod embree;
 mod no_std;
 mod peers;
 mod sources;
@@ -14,8 +15,10 @@ mod validate;
 use std::process::ExitCode;
 
 const USAGE: &str = "\
-cargo xtask validate [ARG]...    build as the tests are built, then `gonio validate ARG...` from the root of the
+cargo xtask validate [--features LIST] [ARG]...
+                                 build as the tests are built, then `gonio validate ARG...` from the root of the
                                  repository; exit code 0 passed, 1 error, 2 wrong usage, 3 a check failed
+cargo xtask embree               get what the feature `embree` needs, if the system does not have it
 cargo xtask no-std               prove that the kernel needs no std, no allocator and cannot panic
 cargo xtask peers [--rounds N] [--spp N] [--python PATH]
                                  the Cornell box against Mitsuba 3, in turns; Python with mitsuba is `python3`
@@ -31,6 +34,7 @@ fn main() -> ExitCode {
     };
     let result = match (command.as_str(), rest) {
         ("validate", rest) => validate::run(rest),
+        ("embree", []) => embree::run(),
         ("no-std", []) => no_std::run(),
         ("peers", rest) => peers::run(rest),
         ("ratio", []) => cargo::run(cargo::cargo().args(["bench", "--bench", "kernel", "--", "--ratio"])),

@@ -4,5 +4,29 @@ use crate::cargo::{Outcome, cargo, run as run_program};
 
 /// Passes on the exit code: 0 success, 1 an error, 2 wrong usage, 3 a check failed; cargo's 101 if the build failed.
 pub(crate) fn run(arguments: &[String]) -> Outcome {
-    run_program(cargo().args(["run", "--bin", "gonio", "--", "validate"]).args(arguments))
+    let (for_cargo, for_gonio) = split(arguments);
+    run_program(cargo().args(["run", "--bin", "gonio"]).args(for_cargo).args(["--", "validate"]).args(for_gonio))
+}
+
+/// What is cargo's, `--features LIST` and `--features=LIST`, and the rest.
+fn split(arguments: &[String]) -> (Vec<&String>, Vec<&String>) {
+    let mut is_list = false;
+    arguments.iter().partition(|argument| {
+        let features = *argument == "--features";
+        std::mem::replace(&mut is_list, features) || features || argument.starts_with("--features=")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn features_are_for_cargo_and_the_rest_is_for_gonio() {
+        let words = |text: &str| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
+        let arguments = words("--quick --features embree --only census --features=more");
+        let (for_cargo, for_gonio) = split(&arguments);
+        assert_eq!(for_cargo, words("--features embree --features=more").iter().collect::<Vec<_>>());
+        assert_eq!(for_gonio, words("--quick --only census").iter().collect::<Vec<_>>());
+    }
 }

@@ -22,15 +22,21 @@
 //! accel.closest(RayKind::Coherent, &rays, &mut hits);
 //! assert_eq!(hits[0].t.to_array()[0], 1.0);
 //! ```
-#![forbid(unsafe_code)]
+#![cfg_attr(not(feature = "embree"), forbid(unsafe_code))]
+#![cfg_attr(feature = "embree", deny(unsafe_code))]
 
 mod brute;
+#[cfg(feature = "embree")]
+#[allow(unsafe_code, reason = "it calls a library written in C++")]
+mod embree;
 mod geometry;
 mod obvhs;
 mod ray;
 pub mod triangle;
 
 pub use brute::Brute;
+#[cfg(feature = "embree")]
+pub use embree::{Embree, EmbreeError};
 pub use geometry::{Geometry, GeometryError, Instance, Mesh, TriangleId, WorldTriangle};
 pub use obvhs::Obvhs;
 pub use ray::{Hit, Hit8, NO_HIT, Opacity, Ray8, RayKind};

@@ -11,7 +11,7 @@ use crate::Accel;
 use crate::brute::scalar_hit;
 use crate::geometry::Geometry;
 use crate::ray::{Hit, Hit8, NO_HIT, Opacity, Ray8, RayKind};
-use crate::triangle::{Beam, Intersect, intersect};
+use crate::triangle::{Beam, Crossing, Intersect, intersect, intersect_fast};
 use few::Few;
 use gonio_kernel::{F32x8, Mask8, Real, U32x8, Vec3};
 use tree::{Child, Node, Tree};
@@ -21,17 +21,18 @@ use tree::{Child, Node, Tree};
 pub struct Obvhs {
     tree: Tree,
     few: Option<Few>,
+    intersect: Intersect,
 }
 
 impl Obvhs {
-    /// Builds the tree: deterministic, O(n log n). Its one test is watertight, whatever is asked for.
+    /// Builds the tree: deterministic, O(n log n). A list of few triangles keeps the watertight test, which costs it nothing.
     pub fn new(geometry: &Geometry, intersect: Intersect) -> Self {
         Self { few: Few::of(geometry), ..Self::always_tree(geometry, intersect) }
     }
 
     /// Builds a tree even where a list would be faster: for tests of the tree.
-    pub fn always_tree(geometry: &Geometry, _intersect: Intersect) -> Self {
-        Self { tree: Tree::build(geometry), few: None }
+    pub fn always_tree(geometry: &Geometry, intersect: Intersect) -> Self {
+        Self { tree: Tree::build(geometry), few: None, intersect }
     }
 }
 
@@ -41,36 +42,18 @@ impl Accel for Obvhs {
     }
 
     fn closest(&self, _kind: RayKind, rays: &[Ray8], hits: &mut [Hit8]) {
-        if let Some(few) = &self.few {
-            return few.closest(rays, hits);
-        }
-        let mut stack = Vec::with_capacity(self.tree.stack_size());
-        for (ray, hit) in rays.iter().zip(hits) {
-            let beam = Beam::new(ray.origin, ray.dir, self.tree.lo, self.tree.hi);
-            let mut found = [MISS; F32x8::LANES];
-            for_each_lane(ray.mask, |lane| {
-                found[lane] =
-                    self.closest_of_one(&beam.splat_lane(lane), ray.t_min.lane(lane), ray.t_max.lane(lane), &mut stack);
-            });
-            *hit = side_by_side(&found);
+        match (&self.few, self.intersect) {
+            (Some(few), _) => few.closest(rays, hits),
+            (None, Intersect::Robust) => self.closest_in_tree::<false>(rays, hits),
+            (None, Intersect::Fast) => self.closest_in_tree::<true>(rays, hits),
         }
     }
 
     fn occluded(&self, _kind: RayKind, rays: &[Ray8], filter: Option<&dyn Opacity>, blocked: &mut [Mask8]) {
-        if let Some(few) = &self.few {
-            return few.occluded(rays, filter, blocked);
-        }
-        let mut stack = Vec::with_capacity(self.tree.stack_size());
-        for ((packet, ray), blocked) in rays.iter().enumerate().zip(blocked) {
-            let beam = Beam::new(ray.origin, ray.dir, self.tree.lo, self.tree.hi);
-            let mut bits = 0;
-            for_each_lane(ray.mask, |lane| {
-                let one = beam.splat_lane(lane);
-                let filter = filter.map(|f| (f, packet * F32x8::LANES + lane));
-                let (t_min, t_max) = (ray.t_min.lane(lane), ray.t_max.lane(lane));
-                bits |= u32::from(self.one_is_occluded(&one, t_min, t_max, filter, &mut stack)) << lane;
-            });
-            *blocked = Mask8::from_bits(bits);
+        match (&self.few, self.intersect) {
+            (Some(few), _) => few.occluded(rays, filter, blocked),
+            (None, Intersect::Robust) => self.occluded_in_tree::<false>(rays, filter, blocked),
+            (None, Intersect::Fast) => self.occluded_in_tree::<true>(rays, filter, blocked),
         }
     }
 }
@@ -99,8 +82,43 @@ fn side_by_side(hits: &[Hit; F32x8::LANES]) -> Hit8 {
 /// A subtree still to be visited, and where the ray enters its box.
 type Entry = (f32, Child);
 
+/// The test that a traversal is compiled with.
+#[inline(always)]
+fn test<const FAST: bool>(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: f32, t_max: f32) -> Crossing {
+    let (t_min, t_max) = (F32x8::splat(t_min), F32x8::splat(t_max));
+    if FAST { intersect_fast(beam, corners, t_min, t_max) } else { intersect(beam, corners, t_min, t_max) }
+}
+
 impl Obvhs {
-    fn closest_of_one(&self, beam: &Beam, t_min: f32, t_max: f32, stack: &mut Vec<Entry>) -> Hit {
+    fn closest_in_tree<const FAST: bool>(&self, rays: &[Ray8], hits: &mut [Hit8]) {
+        let mut stack = Vec::with_capacity(self.tree.stack_size());
+        for (ray, hit) in rays.iter().zip(hits) {
+            let beam = Beam::new(ray.origin, ray.dir, self.tree.lo, self.tree.hi);
+            let mut found = [MISS; F32x8::LANES];
+            for_each_lane(ray.mask, |lane| {
+                let (one, t_min, t_max) = (beam.splat_lane(lane), ray.t_min.lane(lane), ray.t_max.lane(lane));
+                found[lane] = self.closest_of_one::<FAST>(&one, t_min, t_max, &mut stack);
+            });
+            *hit = side_by_side(&found);
+        }
+    }
+
+    fn occluded_in_tree<const FAST: bool>(&self, rays: &[Ray8], filter: Option<&dyn Opacity>, blocked: &mut [Mask8]) {
+        let mut stack = Vec::with_capacity(self.tree.stack_size());
+        for ((packet, ray), blocked) in rays.iter().enumerate().zip(blocked) {
+            let beam = Beam::new(ray.origin, ray.dir, self.tree.lo, self.tree.hi);
+            let mut bits = 0;
+            for_each_lane(ray.mask, |lane| {
+                let one = beam.splat_lane(lane);
+                let filter = filter.map(|f| (f, packet * F32x8::LANES + lane));
+                let (t_min, t_max) = (ray.t_min.lane(lane), ray.t_max.lane(lane));
+                bits |= u32::from(self.one_is_occluded::<FAST>(&one, t_min, t_max, filter, &mut stack)) << lane;
+            });
+            *blocked = Mask8::from_bits(bits);
+        }
+    }
+
+    fn closest_of_one<const FAST: bool>(&self, beam: &Beam, t_min: f32, t_max: f32, stack: &mut Vec<Entry>) -> Hit {
         let mut best = MISS;
         let mut best_index = NO_HIT;
         let mut t_best = t_max;
@@ -116,7 +134,7 @@ impl Obvhs {
             match self.tree.open(child) {
                 tree::Opened::Node(node) => push_children(node, beam, up, t_min - slack, t_best + slack, stack),
                 tree::Opened::Leaf(leaf) => {
-                    let c = intersect(beam, &leaf.corners, F32x8::splat(t_min), F32x8::splat(t_best));
+                    let c = test::<FAST>(beam, &leaf.corners, t_min, t_best);
                     for_each_lane(c.mask, |lane| {
                         let (t, index) = (c.t.lane(lane), leaf.index[lane]);
                         if t < best.t || (t == best.t && index < best_index) {
@@ -131,7 +149,7 @@ impl Obvhs {
         best
     }
 
-    fn one_is_occluded(
+    fn one_is_occluded<const FAST: bool>(
         &self,
         beam: &Beam,
         t_min: f32,
@@ -147,7 +165,7 @@ impl Obvhs {
             match self.tree.open(child) {
                 tree::Opened::Node(node) => push_children(node, beam, up, t_min - slack, t_max + slack, stack),
                 tree::Opened::Leaf(leaf) => {
-                    let c = intersect(beam, &leaf.corners, F32x8::splat(t_min), F32x8::splat(t_max));
+                    let c = test::<FAST>(beam, &leaf.corners, t_min, t_max);
                     let blocks = |lane: usize| match filter {
                         None => true,
                         Some((f, ray)) => {

@@ -210,7 +210,7 @@ fn backend_help() -> String {
 }
 
 fn backend(text: &str) -> Result<Backend, String> {
-    text.parse().map_err(|_| format!("backends are {}", backend_names()))
+    text.parse()
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {

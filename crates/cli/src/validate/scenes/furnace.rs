@@ -8,6 +8,7 @@ use gonio_accel::Intersect;
 use gonio_tracer::scene::{Color, Model, Scene, Sky};
 use gonio_tracer::{Backend, Plan, RenderSettings, Rendering, World, render};
 use std::fmt;
+use std::iter;
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -110,10 +111,11 @@ impl fmt::Display for Shot {
 }
 
 impl Furnace {
-    /// How the picture is rendered for the test: with every backend, and without Russian roulette if it takes part.
+    /// How the picture is rendered for the test: with every backend, obvhs first, and without Russian roulette if it takes part.
     pub(super) fn shots(&self) -> Vec<Shot> {
         let mut shots = Vec::new();
-        for backend in [Backend::Obvhs, Backend::Brute] {
+        let others = Backend::ALL.into_iter().filter(|backend| *backend != Backend::Obvhs);
+        for backend in iter::once(Backend::Obvhs).chain(others) {
             let shot = Shot { backend, threads: 0, plan: None, roulette: true };
             shots.push(shot);
             if matches!(self.law, Law::ClosedRoom) {
