@@ -1,12 +1,15 @@
 //! With the feature `embree`: programs and tests of this package find the library where it was linked, however they are started.
 //! `crates/accel/build.rs` has the rest.
 
+use std::env::{var, var_os};
+
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
+    if var_os("CARGO_FEATURE_EMBREE").is_none() || var_os("CARGO_CFG_UNIX").is_none() {
+        return;
+    }
     println!("cargo:rerun-if-env-changed=EMBREE_LIB_DIR");
-    let embree = std::env::var_os("CARGO_FEATURE_EMBREE").is_some();
-    let unix = std::env::var_os("CARGO_CFG_UNIX").is_some();
-    if let (true, true, Ok(folder)) = (embree, unix, std::env::var("EMBREE_LIB_DIR")) {
+    if let Ok(folder) = var("EMBREE_LIB_DIR") {
         println!("cargo:rustc-link-arg=-Wl,-rpath,{folder}");
     }
 }

@@ -1,8 +1,12 @@
-//! Every backend finds the hit that brute finds, to the last bit, and nothing leaks through closed surfaces.
+//! Every backend finds the hit that brute finds, to the last bit or, Embree, up to rounding; nothing leaks through closed
+//! surfaces.
 
-use crate::support::{Random, geometry, grid, side_by_side, soup, sphere};
+use crate::support::{Random, crowd, geometry, grid, hills, side_by_side, soup, sphere};
 use gonio_accel::{Accel, Brute, Geometry, GeometryError, Hit, Hit8, Intersect, Mesh, Obvhs, Opacity, Ray8, RayKind};
 use gonio_kernel::{F32x8, Mask8, Vec3};
+use gonio_tracer::Backend;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
 
 /// The hits of one packet, misses as `None`.
 fn hits(accel: &dyn Accel, rays: &[Ray8]) -> Vec<Option<Hit>> {
@@ -88,6 +92,8 @@ fn small_geometries() -> Vec<(&'static str, Geometry)> {
         ("a soup", geometry(soup(600, &mut random))),
         ("a soup in the list", geometry(soup(60, &mut random))),
         ("a sphere far away", geometry(sphere(12, [1000.0, -2000.0, 500.0]))),
+        ("hills", geometry(hills(20))),
+        ("a crowd", crowd(&mut random)),
     ]
 }
 
@@ -122,28 +128,156 @@ fn a_wrong_answer_would_be_noticed() {
     assert_ne!(bits(&Some(hit)), bits(&None));
 }
 
+/// Every backend of this build, robust, and the tree of obvhs where it would be a list.
+fn all(geometry: &Geometry) -> Vec<Box<dyn Accel>> {
+    let tree: Box<dyn Accel> = Box::new(Obvhs::always_tree(geometry, Intersect::Robust));
+    let built = |backend: Backend| backend.build(geometry, Intersect::Robust).expect("the backend builds");
+    Backend::ALL.into_iter().map(built).chain([tree]).collect()
+}
+
+/// Rays from anywhere in any direction, some within limits, some with dead lanes.
+fn ordinary_rays(count: usize, random: &mut Random) -> Vec<Ray8> {
+    (0..count / 8)
+        .map(|i| {
+            let lanes: [_; 8] = std::array::from_fn(|_| (random.point(2.0), random.direction()));
+            let mut ray = Ray8::new(side_by_side(lanes.map(|l| l.0)), side_by_side(lanes.map(|l| l.1)));
+            if i % 5 == 0 {
+                (ray.t_min, ray.t_max) = (F32x8::splat(0.3), F32x8::splat(2.0));
+                ray.mask = Mask8::from_bits(random.pick(256) as u32);
+            }
+            ray
+        })
+        .collect()
+}
+
+/// How many hits are neither on the same triangle nor at the same distance, within 1e-5 of the distance and the scene's size.
+fn disagreements(expected: &[Option<Hit>], found: &[Option<Hit>], size: f32) -> usize {
+    let agree = |(a, b): &(&Option<Hit>, &Option<Hit>)| match (a, b) {
+        (None, None) => true,
+        (Some(a), Some(b)) => {
+            let same = (a.instance, a.mesh, a.prim) == (b.instance, b.mesh, b.prim);
+            same || (a.t - b.t).abs() <= 1e-5 * (a.t.abs() + size)
+        }
+        _ => false,
+    };
+    expected.iter().zip(found).filter(|pair| !agree(pair)).count()
+}
+
+/// The diagonal of the world's bounds.
+fn size(geometry: &Geometry) -> f32 {
+    let corners = || geometry.world_triangles().flat_map(|t| t.corners.map(<[f32; 3]>::from));
+    let extent = |axis: usize| {
+        let at = || corners().map(|c| c[axis]);
+        at().fold(f32::MIN, f32::max) - at().fold(f32::MAX, f32::min)
+    };
+    Vec3::new(extent(0), extent(1), extent(2)).length()
+}
+
+/// The backends that must agree with brute up to rounding alone, on ordinary rays.
+fn nearly_exact(geometry: &Geometry) -> Vec<(String, Box<dyn Accel>)> {
+    let inexact = Backend::ALL.into_iter().filter(|backend| !backend.is_exact());
+    let builds = inexact.flat_map(|backend| [(backend, Intersect::Robust), (backend, Intersect::Fast)]);
+    builds
+        .chain([(Backend::Obvhs, Intersect::Fast)])
+        .map(|(b, i)| (format!("{b}, {i}"), b.build(geometry, i).expect("the backend builds")))
+        .collect()
+}
+
+#[test]
+fn what_is_not_exact_agrees_with_brute_up_to_rounding() {
+    for (name, geometry) in small_geometries() {
+        let rays = ordinary_rays(400_000, &mut Random(17));
+        let exact = Obvhs::new(&geometry, Intersect::Robust);
+        let (expected, expected_blocked) = (hits(&exact, &rays), blocked(&exact, &rays, None));
+        for (backend, accel) in nearly_exact(&geometry) {
+            let exceptions = disagreements(&expected, &hits(&*accel, &rays), size(&geometry));
+            assert!(exceptions <= 4, "{name}, {backend}: {exceptions} of {} rays", rays.len() * 8);
+            let blocked = blocked(&*accel, &rays, None);
+            let exceptions: u32 = expected_blocked.iter().zip(blocked).map(|(a, b)| (a ^ b).count_ones()).sum();
+            assert!(exceptions <= 4, "{name}, {backend}: {exceptions} of {} shadow rays", rays.len() * 8);
+        }
+    }
+}
+
+#[test]
+fn a_disagreement_would_be_counted() {
+    let hit = Hit { t: 1.0, bary: [0.25, 0.5], prim: 3, mesh: 0, instance: 0 };
+    let other = Hit { prim: 4, ..hit };
+    let count = |a, b| disagreements(&[a], &[b], 1.0);
+    assert_eq!(count(Some(hit), Some(Hit { t: 1.1, ..hit })), 0);
+    assert_eq!(count(Some(hit), Some(Hit { t: 1.00001, ..other })), 0);
+    assert_eq!(count(Some(hit), Some(Hit { t: 1.0001, ..other })), 1);
+    assert_eq!(count(Some(hit), None) + count(None, Some(hit)), 2);
+}
+
+/// Rays from above at the edges of [`hills`], away from the border: the surface is a graph, so each must hit it.
+fn rays_at_inner_edges(geometry: &Geometry, count: usize, random: &mut Random) -> Vec<Ray8> {
+    let triangles: Vec<_> = geometry.world_triangles().map(|t| t.corners).collect();
+    let n = 64;
+    let mut one = |_| {
+        let square = (1 + random.pick(n - 2)) * n + 1 + random.pick(n - 2);
+        let corners = triangles[2 * square + random.pick(2)];
+        let first = random.pick(3);
+        let aim = corners[first] + (corners[(first + 1) % 3] - corners[first]) * random.unit();
+        let from = Vec3::new(aim.x + random.within(-1.0, 1.0), aim.y + random.within(-1.0, 1.0), 3.0);
+        (from, (aim - from).normalize_or(Vec3::new(0.0, 0.0, -1.0)))
+    };
+    let packet = |_| {
+        let lanes: [_; 8] = std::array::from_fn(&mut one);
+        Ray8::new(side_by_side(lanes.map(|l| l.0)), side_by_side(lanes.map(|l| l.1)))
+    };
+    (0..count / 8).map(packet).collect()
+}
+
+#[test]
+fn the_fast_test_leaks_at_edges_and_the_robust_one_never() {
+    let geometry = geometry(hills(64));
+    let rays = rays_at_inner_edges(&geometry, 400_000, &mut Random(23));
+    let lost = |accel: &dyn Accel| hits(accel, &rays).iter().filter(|hit| hit.is_none()).count();
+    for accel in all(&geometry).iter().filter(|accel| accel.name() != "brute") {
+        assert_eq!(lost(&**accel), 0, "{}", accel.name());
+    }
+    for (name, accel) in nearly_exact(&geometry).iter().filter(|(name, _)| name.ends_with("fast")) {
+        let lost = lost(&**accel) as f64 / 400_000.0;
+        println!("{name}: {:.2} % of rays at edges are lost", 100.0 * lost);
+        // Otherwise the rays tell nothing, or the test is worse than its documentation says.
+        assert!(lost > 0.01 && lost < 0.12, "{name}: {lost}");
+    }
+}
+
 #[test]
 fn nothing_leaks_through_a_closed_sphere() {
     let geometry = geometry(sphere(32, [0.0; 3]));
     let triangles: Vec<_> = geometry.world_triangles().map(|t| t.corners).collect();
     let mut random = Random(3);
-    let rays: Vec<Ray8> = (0..50_000)
-        .map(|_| {
-            let lanes: [_; 8] = std::array::from_fn(|_| {
-                let [a, b, _] = triangles[random.pick(triangles.len())];
-                let aim = if random.pick(3) == 0 { a } else { a + (b - a) * random.unit() };
-                let from = random.point(0.4);
-                (from, (aim - from).normalize())
-            });
+    let mut rays_at = |vertices: bool| -> Vec<Ray8> {
+        let mut one = |_| {
+            let [a, b, _] = triangles[random.pick(triangles.len())];
+            let aim = if vertices { a } else { a + (b - a) * random.unit() };
+            let from = random.point(0.4);
+            (from, (aim - from).normalize())
+        };
+        let packet = |_| {
+            let lanes: [_; 8] = std::array::from_fn(&mut one);
             Ray8::new(side_by_side(lanes.map(|l| l.0)), side_by_side(lanes.map(|l| l.1)))
-        })
-        .collect();
-    let leaks = hits(&Obvhs::new(&geometry, Intersect::Robust), &rays).iter().filter(|h| h.is_none()).count();
-    assert_eq!(leaks, 0, "of {} rays aimed at edges and vertices", rays.len() * 8);
+        };
+        (0..25_000).map(packet).collect()
+    };
+    let (at_edges, at_vertices) = (rays_at(false), rays_at(true));
+    for accel in all(&geometry).iter().filter(|accel| accel.name() != "brute") {
+        let leaks = |rays: &[Ray8]| hits(&**accel, rays).iter().filter(|hit| hit.is_none()).count();
+        assert_eq!(leaks(&at_edges), 0, "{}: of 200000 rays aimed at edges", accel.name());
+        let (leaks, name) = (leaks(&at_vertices), accel.name());
+        println!("{name}: {leaks} of 200000 rays aimed at vertices leak");
+        // Embree's edge functions are watertight along an edge; around a vertex their signs may go round in a circle.
+        let allowed = if name == "embree" { 200 } else { 0 };
+        assert!(leaks <= allowed, "{name}: {leaks} of 200000 rays aimed at vertices");
+    }
 }
 
 #[test]
 fn vertical_rays_on_the_edges_of_a_flat_grid_all_hit() {
+    // To Embree the border of a flat grid is outside: its boxes have no padding.
     let geometry = geometry(grid(30));
     let rays: Vec<Ray8> = (0..=30)
         .flat_map(|y| (0..=30).map(move |x| (x, y)))
@@ -156,8 +290,12 @@ fn vertical_rays_on_the_edges_of_a_flat_grid_all_hit() {
             Ray8::new(side_by_side(origin), side_by_side([Vec3::new(-0.0, 0.0, dz); 8]))
         })
         .collect();
-    for accel in [&Brute::new(&geometry) as &dyn Accel, &Obvhs::new(&geometry, Intersect::Robust)] {
-        assert_eq!(hits(accel, &rays).iter().filter(|h| h.is_none()).count(), 0);
+    for accel in all(&geometry) {
+        let inner = |v: f32| accel.name() != "embree" || (v > 0.0 && v < 30.0);
+        let asked = rays.iter().flat_map(|ray| (0..8).map(|l| (ray.origin.x.lane(l), ray.origin.y.lane(l))));
+        let hits = hits(&*accel, &rays);
+        let lost = asked.zip(&hits).filter(|&((x, y), hit)| inner(x) && inner(y) && hit.is_none());
+        assert_eq!(lost.count(), 0, "{}", accel.name());
     }
 }
 
@@ -182,16 +320,92 @@ fn an_opacity_filter_lets_light_through_chosen_triangles() {
     }
 }
 
+/// Writes down what it is asked, and lets everything through.
+#[derive(Default)]
+struct Witness(Mutex<Vec<(usize, u32, u32, u32)>>);
+
+impl Opacity for Witness {
+    fn blocks(&self, ray: usize, hit: &Hit) -> bool {
+        assert!(hit.bary.iter().all(|b| (0.0..=1.000_001).contains(b)) && hit.t >= 0.0);
+        self.0.lock().unwrap().push((ray, hit.instance, hit.mesh, hit.prim));
+        false
+    }
+}
+
+impl Witness {
+    /// Everything it was asked by a backend, once, in order.
+    fn of(accel: &dyn Accel, rays: &[Ray8]) -> Vec<(usize, u32, u32, u32)> {
+        let witness = Self::default();
+        assert!(blocked(accel, rays, Some(&witness)).iter().all(|&bits| bits == 0), "{}", accel.name());
+        let mut asked = witness.0.into_inner().unwrap();
+        asked.sort_unstable();
+        asked.dedup();
+        asked
+    }
+}
+
+#[test]
+fn a_filter_that_lets_everything_through_is_asked_about_every_triangle_on_the_way() {
+    for geometry in [crowd(&mut Random(8)), geometry(soup(300, &mut Random(4))), geometry(sphere(20, [0.0; 3]))] {
+        let rays = ordinary_rays(40_000, &mut Random(31));
+        let expected = Witness::of(&Brute::new(&geometry), &rays);
+        assert!(expected.len() > 1000);
+        for accel in all(&geometry) {
+            assert_eq!(Witness::of(&*accel, &rays), expected, "{}", accel.name());
+        }
+    }
+}
+
+#[test]
+fn a_panic_in_a_filter_comes_out_of_the_backend() {
+    struct Panics;
+    impl Opacity for Panics {
+        fn blocks(&self, _: usize, _: &Hit) -> bool {
+            panic!("the filter's own words")
+        }
+    }
+    let geometry = geometry(sphere(20, [0.0; 3]));
+    let rays = ordinary_rays(80, &mut Random(1));
+    for accel in all(&geometry) {
+        let caught = catch_unwind(AssertUnwindSafe(|| blocked(&*accel, &rays, Some(&Panics))));
+        let words = *caught.unwrap_err().downcast::<&str>().unwrap();
+        assert_eq!(words, "the filter's own words", "{}", accel.name());
+    }
+}
+
+#[test]
+fn rays_that_are_not_numbers_do_not_disturb_the_others() {
+    let geometry = geometry(sphere(20, [0.0; 3]));
+    let inside = Ray8::new(side_by_side([Vec3::new(0.1, 0.2, 0.3); 8]), side_by_side([Vec3::new(0.0, 0.0, 1.0); 8]));
+    for wrong in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let mut ray = inside;
+        ray.origin.x = F32x8::from_fn(|l| if l == 0 { wrong } else { ray.origin.x.lane(l) });
+        ray.dir.y = F32x8::from_fn(|l| if l == 1 { wrong } else { ray.dir.y.lane(l) });
+        for accel in all(&geometry) {
+            assert!(hits(&*accel, &[ray])[2..].iter().all(Option::is_some), "{}", accel.name());
+            assert_eq!(blocked(&*accel, &[ray], None)[0] >> 2, 0x3f, "{}", accel.name());
+        }
+    }
+}
+
+#[test]
+fn backends_leave_the_arithmetic_of_their_caller_alone() {
+    let half = std::hint::black_box(0.5_f32);
+    let geometry = geometry(sphere(20, [0.0; 3]));
+    for accel in all(&geometry) {
+        hits(&*accel, &ordinary_rays(80, &mut Random(1)));
+        assert!(std::hint::black_box(f32::MIN_POSITIVE) * half > 0.0, "{} flushes denormals", accel.name());
+        assert!(f32::from_bits(std::hint::black_box(2)) * half > 0.0, "{} ignores denormals", accel.name());
+    }
+}
+
 #[test]
 fn an_empty_geometry_is_a_miss() {
     let geometry = Geometry::new(Vec::new(), Vec::new()).unwrap();
     let ray = Ray8::new(side_by_side([Vec3::new(0.0, 0.0, 0.0); 8]), side_by_side([Vec3::new(0.0, 0.0, 1.0); 8]));
-    for accel in [
-        &Brute::new(&geometry) as &dyn Accel,
-        &Obvhs::new(&geometry, Intersect::Robust),
-        &Obvhs::always_tree(&geometry, Intersect::Robust),
-    ] {
-        assert!(hits(accel, &[ray]).iter().all(Option::is_none));
+    for accel in all(&geometry) {
+        assert!(hits(&*accel, &[ray]).iter().all(Option::is_none), "{}", accel.name());
+        assert_eq!(blocked(&*accel, &[ray], None), [0], "{}", accel.name());
     }
 }
 

@@ -1,6 +1,6 @@
 //! What several test modules need: the shipped scenes, small meshes, and random numbers that repeat.
 
-use gonio_accel::{Geometry, Mesh};
+use gonio_accel::{Geometry, Instance, Mesh};
 use gonio_kernel::{F32x8, Vec3};
 use gonio_tracer::scene::Scene;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -182,6 +182,17 @@ pub(crate) fn grid(n: u32) -> Mesh {
     Mesh { positions, triangles }
 }
 
+/// A hilly height field over n × n squares, open at the sides: whatever falls through it is lost. Corners lie at odd places, so
+/// that no product is exact.
+pub(crate) fn hills(n: u32) -> Mesh {
+    let mut mesh = grid(n);
+    for p in &mut mesh.positions {
+        let [x, y] = [p[0] * 0.317, p[1] * 0.291];
+        *p = [x - 0.137 * n as f32, y, (1.7 * x).sin() * (2.3 * y).cos() * 0.4];
+    }
+    mesh
+}
+
 /// Triangles of all sizes and shapes, slivers and points among them.
 pub(crate) fn soup(count: u32, random: &mut Random) -> Mesh {
     let mut positions = Vec::new();
@@ -201,6 +212,22 @@ pub(crate) fn soup(count: u32, random: &mut Random) -> Mesh {
         });
     }
     Mesh { positions, triangles: (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect() }
+}
+
+/// Several meshes, one of them empty and one unused, each placed several times: turned, stretched, mirrored.
+pub(crate) fn crowd(random: &mut Random) -> Geometry {
+    let meshes = vec![sphere(9, [0.0; 3]), Mesh::default(), soup(80, random), grid(3), grid(1)];
+    let places = (0..12).map(|i| {
+        let mut row = |axis: usize| -> [f64; 4] {
+            std::array::from_fn(|c| {
+                let own = if c == axis { 0.5 } else { 0.0 };
+                own + f64::from(random.within(-0.3, 0.3))
+                    + if c == 3 { f64::from(random.within(-1.0, 1.0)) } else { 0.0 }
+            })
+        };
+        Instance { mesh: i % 4, transform: [row(0), row(1), row(2)] }
+    });
+    Geometry::new(meshes, places.collect()).expect("the meshes are in order")
 }
 
 /// A geometry of one mesh.

@@ -10,10 +10,10 @@ use std::path::{Path, PathBuf};
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
-    println!("cargo:rerun-if-env-changed=EMBREE_LIB_DIR");
     if var_os("CARGO_FEATURE_EMBREE").is_none() {
         return;
     }
+    println!("cargo:rerun-if-env-changed=EMBREE_LIB_DIR");
     let folder = var_os("EMBREE_LIB_DIR").map(PathBuf::from).filter(|folder| has_embree(folder));
     let Some(folder) = folder else {
         let found =

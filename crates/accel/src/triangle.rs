@@ -176,18 +176,17 @@ pub fn intersect(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: F32x8, t_max: F
 #[inline(always)]
 pub fn intersect_fast(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: F32x8, t_max: F32x8) -> Crossing {
     let [c0, c1, c2] = *corners;
-    let (e1, e2, from_corner) = (c1 - c0, c2 - c0, beam.origin - c0);
-    let p = beam.dir.cross(e2);
-    let fall = e1.dot(p);
+    let (e1, e2, to_corner) = (c0 - c1, c2 - c0, c0 - beam.origin);
+    let (normal, moment) = (e2.cross(e1), to_corner.cross(beam.dir));
+    let fall = normal.dot(beam.dir);
     let (size, sign) = (fall.abs(), F32x8::ONE.copysign(fall));
-    let second = from_corner.dot(p) * sign;
-    let q = from_corner.cross(e1);
-    let third = beam.dir.dot(q) * sign;
+    // One moment serves both edges at the first corner: neighbours that share it as their first see the same.
+    let (second, third) = (moment.dot(e2) * sign, moment.dot(e1) * sign);
     let first = size - second - third;
     let inside = first.ge(F32x8::ZERO) & second.ge(F32x8::ZERO) & third.ge(F32x8::ZERO);
     let mut crossing = Crossing { mask: inside, t: F32x8::ZERO, edges: [first, second, third] };
     if inside.to_bits() != 0 {
-        let height = e2.dot(q) * sign;
+        let height = normal.dot(to_corner) * sign;
         crossing.t = height / size;
         // height > 0 also fails for a triangle without an area, whose t is not a number.
         crossing.mask = inside & height.gt(F32x8::ZERO) & crossing.t.ge(t_min) & crossing.t.le(t_max);
