@@ -103,6 +103,9 @@ fn wrong_usage_is_exit_code_2_and_says_what_would_be_right() {
     ] {
         gonio(folder.path(), arguments).fails(2, words);
     }
+    if !cfg!(feature = "embree") {
+        gonio(folder.path(), "render scene.toml -o a.exr --backend embree").fails(2, "cargo xtask embree");
+    }
     assert!(!folder.path().join("a.exr").exists());
 }
 

@@ -22,8 +22,11 @@ use gonio_kernel::frame::tangents;
 use gonio_kernel::{F32x8, Mask8, Real, Vec3};
 use std::fmt;
 
-/// How strictly rays are tested against triangles. What a backend makes of it is in its documentation; `Brute` is always
-/// robust, because it is what the others are measured against.
+/// How strictly rays are tested against triangles. `Brute` is always robust, because it is what the others are measured against.
+///
+/// Measured with 400,000 rays from above at inner points of inner edges of a height field, each of which must hit: lost are
+/// 0 robust, by obvhs and by Embree; fast, 8.9 % by obvhs and 6.1 % by Embree. Of 200,000 rays from within a closed sphere at its
+/// vertices, obvhs loses none and Embree's robust test 121. (`tests/backends.rs` repeats both.)
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Intersect {
     /// Watertight: no ray falls between triangles that share an edge, wherever it is aimed.

@@ -69,7 +69,7 @@ pub(super) fn run(options: &Options, sink: &mut dyn FnMut(Check)) -> Result<()> 
             }
         }
         if specimen.closed {
-            for backend in Backend::ALL {
+            for backend in Backend::ALL.into_iter().filter(|backend| backend.is_exact()) {
                 let accel = backend.build(&specimen.geometry, Intersect::Robust)?;
                 send("leaks", format!("{backend} inside the {}", specimen.name), &mut |seed| {
                     let (count, detail) = leaks(&*accel, &specimen, count, seed);
@@ -97,12 +97,17 @@ pub(super) fn run(options: &Options, sink: &mut dyn FnMut(Check)) -> Result<()> 
 
 /// Backends that this build does not have, by name: silence would read as success.
 fn not_run(options: &Options, sink: &mut dyn FnMut(Check)) {
-    let absent = !Backend::ALL.iter().any(|backend| backend.to_string() == "embree");
-    if absent && wanted(options, "census", "embree") {
+    let present = Backend::ALL.iter().any(|backend| backend.to_string() == "embree");
+    let reason = if present {
+        "its hits agree up to rounding, and this census compares bits; tests/backends.rs has its own"
+    } else {
+        "this build has no Embree backend (feature `embree`), its census did not run"
+    };
+    if wanted(options, "census", "embree") {
         sink(Check {
             instrument: "census".to_owned(),
             subject: "embree".to_owned(),
-            outcome: Outcome::NotRun("this build has no Embree backend yet, its census did not run".to_owned()),
+            outcome: Outcome::NotRun(reason.to_owned()),
             measured: 0.0,
             limit: 0.0,
             meaning: String::new(),
