@@ -163,6 +163,24 @@ fn disagreements(expected: &[Option<Hit>], found: &[Option<Hit>], size: f32) -> 
     expected.iter().zip(found).filter(|pair| !agree(pair)).count()
 }
 
+/// How many hits are not where their barycentrics say, within 1e-5 of the distance and the scene's size.
+fn misplaced(geometry: &Geometry, rays: &[Ray8], found: &[Option<Hit>]) -> usize {
+    let triangles: Vec<_> = geometry.world_triangles().collect();
+    let size = size(geometry);
+    let is_off = |(i, hit): (usize, &Option<Hit>)| {
+        let Some(hit) = hit else { return false };
+        // World triangles are in the order of (instance, prim).
+        let at = triangles.partition_point(|t| (t.id.instance, t.id.prim) < (hit.instance, hit.prim));
+        let ([a, b, c], id) = (triangles[at].corners, triangles[at].id);
+        assert_eq!((id.instance, id.mesh, id.prim), (hit.instance, hit.mesh, hit.prim));
+        let one = |v: Vec3<F32x8>| Vec3::new(v.x.lane(i % 8), v.y.lane(i % 8), v.z.lane(i % 8));
+        let along_ray = one(rays[i / 8].origin) + one(rays[i / 8].dir) * hit.t;
+        let on_triangle = a + (b - a) * hit.bary[0] + (c - a) * hit.bary[1];
+        (along_ray - on_triangle).length() > 1e-5 * (hit.t + size)
+    };
+    found.iter().enumerate().filter(|pair| is_off(*pair)).count()
+}
+
 /// The diagonal of the world's bounds.
 fn size(geometry: &Geometry) -> f32 {
     let corners = || geometry.world_triangles().flat_map(|t| t.corners.map(<[f32; 3]>::from));
@@ -190,8 +208,11 @@ fn what_is_not_exact_agrees_with_brute_up_to_rounding() {
         let exact = Obvhs::new(&geometry, Intersect::Robust);
         let (expected, expected_blocked) = (hits(&exact, &rays), blocked(&exact, &rays, None));
         for (backend, accel) in nearly_exact(&geometry) {
-            let exceptions = disagreements(&expected, &hits(&*accel, &rays), size(&geometry));
+            let found = hits(&*accel, &rays);
+            let exceptions = disagreements(&expected, &found, size(&geometry));
             assert!(exceptions <= 4, "{name}, {backend}: {exceptions} of {} rays", rays.len() * 8);
+            let exceptions = misplaced(&geometry, &rays, &found);
+            assert!(exceptions <= 4, "{name}, {backend}: {exceptions} of {} hits are misplaced", rays.len() * 8);
             let blocked = blocked(&*accel, &rays, None);
             let exceptions: u32 = expected_blocked.iter().zip(blocked).map(|(a, b)| (a ^ b).count_ones()).sum();
             assert!(exceptions <= 4, "{name}, {backend}: {exceptions} of {} shadow rays", rays.len() * 8);

@@ -32,8 +32,8 @@ pub enum Intersect {
     /// Watertight: no ray falls between triangles that share an edge, wherever it is aimed.
     #[default]
     Robust,
-    /// As many rays as possible per second: a ray aimed at a shared edge or vertex may fall through. Elsewhere the same hits
-    /// up to rounding.
+    /// For speed: a ray aimed at a shared edge or vertex may fall through. Elsewhere the same hits up to rounding. The gain is
+    /// small, because the robust tests are cheap: on a terrain of a million triangles 0 to 8 % (obvhs), 3 to 12 % (Embree).
     Fast,
 }
 
