@@ -71,7 +71,19 @@ fn rows(csv: &str) -> Vec<Vec<&str>> {
 fn help_and_version_are_no_errors() {
     let folder = folder();
     assert_eq!(gonio(folder.path(), "--version").succeeds(), format!("gonio {}\n", env!("CARGO_PKG_VERSION")));
-    for command in ["", "render", "compare", "bsdf", "bsdf eval", "bsdf sample", "bsdf albedo", "validate"] {
+    for command in [
+        "",
+        "render",
+        "compare",
+        "bsdf",
+        "bsdf eval",
+        "bsdf sample",
+        "bsdf albedo",
+        "accel",
+        "accel census",
+        "accel bench",
+        "validate",
+    ] {
         let help = gonio(folder.path(), &format!("{command} --help")).succeeds();
         assert!(help.contains("Usage: gonio"), "{help}");
     }
@@ -97,6 +109,12 @@ fn wrong_usage_is_exit_code_2_and_says_what_would_be_right() {
         ("bsdf sample white.toml --wo 0,0,1 -n 0", "at least 1"),
         ("bsdf eval white.toml --directions in.csv --precision f16", "f32"),
         ("bsdf albedo white.toml --cos 2", "a cosine is a number from -1 to 1"),
+        ("accel census box.obj --scales 1,0", "a scale is a number above 0"),
+        ("accel census box.obj --rays 0", "at least 1"),
+        ("accel census box.obj --backends rtx", "there is no backend \"rtx\""),
+        ("accel census box.obj --backends brute", "brute is what the others are compared with"),
+        ("accel bench box.obj --backends obvhs,obvhs", "names obvhs twice"),
+        ("accel bench box.obj --rounds 0", "0 is not in"),
         ("validate --quick --full", "cannot be used with"),
         ("validate --seed today", "random"),
         ("validate --quick --only no-such-check", "instruments are"),
@@ -122,6 +140,9 @@ fn errors_are_exit_code_1_and_point_to_file_and_line() {
         ("render nothing.toml -o a.exr", "error: nothing.toml"),
         ("render bad.toml -o a.exr", "error: bad.toml:3: "),
         ("render in.csv -o a.exr", "neither a scene file (.toml) nor an OBJ file (.obj)"),
+        ("accel census nothing.obj", "error: nothing.obj"),
+        ("accel census bad.toml", "error: bad.toml:3: "),
+        ("accel bench bad.toml", "error: bad.toml:3: "),
         ("bsdf albedo nothing.toml --cos 1", "error: nothing.toml: cannot be read"),
         ("bsdf albedo typo.toml --cos 1", "error: typo.toml:3: "),
         ("bsdf eval white.toml --directions nothing.csv", "error: nothing.csv: cannot be read"),
@@ -389,11 +410,120 @@ fn a_validation_writes_its_report_and_a_failure_is_exit_code_3() {
         report,
         serde_json::from_slice::<Value>(&fs::read(folder.path().join("report/report.json")).unwrap()).unwrap()
     );
-    let run = gonio(folder.path(), "validate --quick --only embree --out report");
-    assert!(run.out.contains("0 passed, 0 failed, 1 not run (embree)"), "{}", run.out);
+    assert!(report["census"]["rows"].as_array().unwrap().iter().any(|row| row["leaks"] == 0 && row["scale"] == 1e-4));
+    if !cfg!(feature = "embree") {
+        let run = gonio(folder.path(), "validate --quick --only embree --out report");
+        assert!(run.out.contains("0 passed, 0 failed, 1 not run (embree)"), "{}", run.out);
+    }
     let run = gonio(folder.path(), "validate --quick --only leaks --out report --plant-failure");
     assert!(run.out.contains("FAIL  planted-failure"), "{}", run.out);
     assert_eq!(run.code, 3);
+}
+
+/// The files of a census of the Cornell box with few rays.
+fn census(folder: &Path, more: &str) -> Run {
+    gonio(folder, &format!("accel census {} --rays 4000 --scales 1,1e-4 {more}", scene("cornell-box.toml")))
+}
+
+#[test]
+fn a_census_prints_its_rows_and_its_json_has_the_same_numbers() {
+    let folder = folder();
+    let table = census(folder.path(), "--json census.json").succeeds();
+    for words in ["edge-from-inside", "axis-parallel", "pass  obvhs at scale 1e-4", "by brute", "passed"] {
+        assert!(table.contains(words), "\"{words}\" is not in: {table}");
+    }
+    let report: Value = serde_json::from_slice(&fs::read(folder.path().join("census.json")).unwrap()).unwrap();
+    assert_eq!((report["passed"].as_bool(), report["triangles"].as_u64()), (Some(true), Some(36)));
+    assert_eq!(report["disagreements"].as_array().map(Vec::len), Some(0));
+    let rows = report["rows"].as_array().unwrap();
+    let backends = 1 + report["backends"].as_array().unwrap().len();
+    assert_eq!(rows.len(), 2 * 13 * backends);
+    for row in rows {
+        let number = |name: &str| row[name].as_u64().unwrap_or_else(|| panic!("{name} in {row}"));
+        assert!(number("rays") > 1000 && number("hits") > 0 && number("hits") <= number("rays"), "{row}");
+        assert_eq!(number("seen_by_brute"), number("rays"), "brute can look at all rays of a small scene");
+        let disagreements: u64 = ["hit_or_miss", "prim", "t", "bary", "shadow"].map(number).iter().sum();
+        assert!(disagreements == 0 || row["backend"] == "embree", "{row}");
+        assert!(row["family"].is_string() && row["scale"].is_number() && row["specimen"].is_string());
+    }
+    for finding in report["findings"].as_array().unwrap() {
+        assert!(finding["count"].as_u64() <= finding["limit"].as_u64(), "{finding}");
+    }
+    let without = report["not_run"].as_array().unwrap().iter().any(|name| name == "embree");
+    assert_eq!(without, !rows.iter().any(|row| row["backend"] == "embree"));
+    assert_eq!(table.contains("not run  embree"), without);
+    // To standard output it is JSON alone, and the same census but for its duration.
+    let mut again: Value = serde_json::from_str(&census(folder.path(), "--json -").succeeds()).unwrap();
+    again["seconds"] = report["seconds"].clone();
+    assert_eq!(again, report);
+}
+
+#[test]
+fn a_backend_that_is_wrong_fails_the_census_and_its_rays_can_be_cast_again() {
+    let folder = folder();
+    let run = census(folder.path(), "--plant-fault second --json -");
+    run.fails(2, "faults are: drops hits on shared edges");
+    let output = Command::new(PROGRAM)
+        .args([
+            "accel",
+            "census",
+            &scene("cornell-box.toml"),
+            "--rays",
+            "4000",
+            "--scales",
+            "1",
+            "--json",
+            "census.json",
+        ])
+        .args(["--plant-fault", "returns the second nearest hit"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("FAIL  obvhs at scale 1e0: rays that disagree") && text.contains("obvhs: another"), "{text}");
+    let report: Value = serde_json::from_slice(&fs::read(folder.path().join("census.json")).unwrap()).unwrap();
+    let listed = report["disagreements"].as_array().unwrap();
+    assert!(listed.len() > 20 && text.contains("more; --json FILE"), "{}", listed.len());
+    for entry in listed {
+        let numbers = entry["ray"]["origin"].as_array().into_iter().chain(entry["ray"]["dir"].as_array()).flatten();
+        for number in numbers.chain([&entry["ray"]["t_min"], &entry["ray"]["t_max"], &entry["told"][0]["hit"]["t"]]) {
+            let decimal: f32 = number["decimal"].as_str().unwrap().parse().unwrap();
+            let bits = u32::from_str_radix(number["bits"].as_str().unwrap(), 16).unwrap();
+            assert_eq!(decimal.to_bits(), bits, "{entry}");
+        }
+        assert_eq!((&entry["told"][0]["backend"], &entry["told"][1]["backend"]), (&"brute".into(), &"obvhs".into()));
+        // The second nearest lies behind the nearest.
+        let t = |i: usize| entry["told"][i]["hit"]["t"]["decimal"].as_str().unwrap().parse::<f32>().unwrap();
+        assert!(t(1) > t(0), "{entry}");
+    }
+}
+
+#[test]
+fn a_benchmark_prints_ratios_and_json_with_the_same_shape() {
+    let folder = folder();
+    let bench = format!("accel bench {} --rays 2000 --rounds 5", scene("cornell-box.toml"));
+    let table = gonio(folder.path(), &format!("{bench} --threads 2 --backends obvhs,brute")).succeeds();
+    for words in ["Mrays/s", "ratio", "ambient-occlusion", "brute", "incoherent", "2 threads", "build s"] {
+        assert!(table.contains(words), "\"{words}\" is not in: {table}");
+    }
+    let report: Value = serde_json::from_str(&gonio(folder.path(), &format!("{bench} --json")).succeeds()).unwrap();
+    assert_eq!((report["rounds"].as_u64(), report["threads"].as_u64()), (Some(5), Some(1)));
+    for build in report["builds"].as_array().unwrap() {
+        assert!(build["seconds"].as_f64().unwrap() >= 0.0 && build["intersect"].is_string(), "{build}");
+    }
+    let results = report["results"].as_array().unwrap();
+    for set in ["primary", "bounce", "random", "shadow", "ambient-occlusion"] {
+        let rows: Vec<_> = results.iter().filter(|row| row["set"] == set).collect();
+        assert_eq!(rows[0]["ratio"].as_f64(), Some(1.0));
+        assert_eq!(rows.iter().any(|row| row["coherent"] == true), set == "primary");
+        for row in rows {
+            let [min, median, max, ratio] = ["min", "median", "max", "ratio"].map(|name| row[name].as_f64().unwrap());
+            assert!(0.0 < min && min <= median && median <= max && ratio > 0.0, "{row}");
+            assert!(row["hits"].as_u64().unwrap() <= row["rays"].as_u64().unwrap());
+        }
+    }
+    assert!(report["environment"]["processor"].is_string());
 }
 
 #[test]

@@ -1,19 +1,23 @@
-//! The command line of Gonio: `gonio render`, `compare`, `bsdf` and `validate`.
+//! The command line of Gonio: `gonio render`, `compare`, `bsdf`, `accel` and `validate`.
 //!
 //! One file per subcommand, and no physics: scenes and pictures belong to `gonio-tracer`, scattering to `gonio-kernel`,
 //! its instruments to `gonio-lab`. What is here reads arguments, hands them on, and writes what comes back.
 //!
 //! Results go to files or standard output, everything else (warnings, progress, errors) to standard error. A file appears
-//! whole or not at all. Exit codes: 0 success; 1 an error; 2 wrong usage; 3 a check of the validation failed; 75 a render
+//! whole or not at all. Exit codes: 0 success; 1 an error; 2 wrong usage; 3 a check failed (validate, accel census); 75 a render
 //! was stopped and its picture is good; 130 a run was interrupted and quit at once.
 #![forbid(unsafe_code)]
 
+mod accel;
 mod bsdf;
+mod census;
 mod compare;
 mod cpu;
+mod environment;
 mod output;
 mod random;
 mod render;
+mod shipped;
 mod signals;
 mod statistics;
 mod usage;
@@ -25,7 +29,7 @@ use clap::{Parser, Subcommand};
 use std::io;
 use std::process::ExitCode;
 
-const EXIT_CODES: &str = "Exit codes: 0 success; 1 an error; 2 wrong usage; 3 a check of the validation failed; \
+const EXIT_CODES: &str = "Exit codes: 0 success; 1 an error; 2 wrong usage; 3 a check failed (validate, accel census); \
                           75 a render was stopped early, its picture is written; 130 interrupted.";
 
 /// A reflectance kernel that can be trusted, and the eight-wide path tracer that proves it.
@@ -40,6 +44,7 @@ struct Cli {
 enum Command {
     Render(render::Args),
     Bsdf(bsdf::Args),
+    Accel(accel::Args),
     Compare(compare::Args),
     Validate(validate::Args),
 }
@@ -61,6 +66,7 @@ pub fn run() -> ExitCode {
     let result = match cli.command {
         Command::Render(args) => render::run(&args),
         Command::Bsdf(args) => bsdf::run(&args),
+        Command::Accel(args) => accel::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Validate(args) => validate::run(&args),
     };

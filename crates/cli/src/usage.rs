@@ -1,7 +1,10 @@
 //! Arguments: how they are read, and what is said when they cannot be.
 
+use indicatif::ProgressBar;
 use std::fmt;
+use std::io::{IsTerminal, stderr};
 use std::str::FromStr;
+use std::time::Duration;
 
 /// Wrong usage that only shows when the input is known (a crop outside of the picture): exit code 2, not 1.
 #[derive(Debug)]
@@ -18,6 +21,16 @@ impl std::error::Error for Usage {}
 /// Prints a warning to standard error.
 pub(crate) fn warn(sentence: &str) {
     eprintln!("warning: {sentence}");
+}
+
+/// A sign of life on a terminal; nothing elsewhere.
+pub(crate) fn spinner(message: &'static str) -> Option<ProgressBar> {
+    stderr().is_terminal().then(|| {
+        let spinner = ProgressBar::new_spinner();
+        spinner.enable_steady_tick(Duration::from_millis(200));
+        spinner.set_message(message);
+        spinner
+    })
 }
 
 /// Reads exactly `N` values between separators.

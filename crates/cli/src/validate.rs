@@ -1,7 +1,7 @@
 //! `gonio validate`: every physical check, one table, one report, one exit code.
 //!
 //! Three groups of instruments: those of `gonio-lab` on the kernel's lobes, furnace scenes through the whole tracer
-//! ([`scenes`]), and the census of the ray-casting backends ([`census`]). Checks that are not statistical are exact. The
+//! ([`scenes`]), and the census of the ray-casting backends ([`census`], by [`crate::census`]). Checks that are not statistical are exact. The
 //! statistical ones share one family-wise significance of 0.01 per run, split in halves: [`SIGNIFICANCE`] for the scenes,
 //! the same for the kernel. What cannot run is named and never counted as passed.
 
@@ -15,15 +15,13 @@ mod table;
 
 use crate::output::{Target, write_text};
 use crate::random::fresh_seed;
-use crate::usage::Usage;
+use crate::usage::{Usage, spinner};
 use anyhow::{Context, Result};
 use gonio_lab::{Check, Effort, Options, Outcome, validate_kernel};
-use indicatif::ProgressBar;
 use report::Report;
-use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// What all tests of the furnace scenes together may fail by chance, per run, and likewise all tests of the kernel:
 /// half of 0.01 each.
@@ -97,7 +95,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
     let start = Instant::now();
     let mut checks = Vec::new();
-    let spinner = spinner();
+    let spinner = spinner("measuring the kernel");
     let mut sink = |check: Check| {
         if let Some(spinner) = &spinner {
             spinner.set_message(format!("{}: {}", check.instrument, check.subject));
@@ -106,7 +104,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     validate_kernel(&options, &mut sink);
     let pictures = scenes::run(&options, &args.out, &mut sink)?;
-    census::run(&options, &mut sink)?;
+    let table = census::run(&options, &args.out, &mut sink)?;
     if args.plant_failure {
         sink(planted_failure());
     }
@@ -119,7 +117,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         return Err(Usage(format!("--only {only} matches nothing; instruments are {}", names.join(", "))).into());
     }
 
-    let report = Report::new(&options, checks, instruments(), start.elapsed().as_secs_f64());
+    let report = Report::new(&options, checks, table, instruments(), start.elapsed().as_secs_f64());
     let json = serde_json::to_string_pretty(&report).context("the report cannot be written as JSON")? + "\n";
     write_text(&Target::File(args.out.join("report.json")), &json)?;
     write_text(&Target::File(args.out.join("report.html")), &html::page(&report, &pictures, &plots))?;
@@ -143,15 +141,6 @@ fn planted_failure() -> Check {
         detail: "not a measurement".to_owned(),
         seconds: 0.0,
     }
-}
-
-fn spinner() -> Option<ProgressBar> {
-    std::io::stderr().is_terminal().then(|| {
-        let spinner = ProgressBar::new_spinner();
-        spinner.enable_steady_tick(Duration::from_millis(200));
-        spinner.set_message("measuring the kernel");
-        spinner
-    })
 }
 
 /// Whether `--only` asks for a check.

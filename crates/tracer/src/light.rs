@@ -66,6 +66,11 @@ impl Lights {
         }
     }
 
+    /// All emitting triangles.
+    pub(crate) fn emitters(&self) -> &[Emitter] {
+        &self.emitters
+    }
+
     /// Whether the environment does anything.
     pub(crate) fn has_sky(&self) -> bool {
         self.sky.is_some() && (self.camera_sees_sky || self.sky_illuminates)

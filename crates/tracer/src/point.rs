@@ -12,15 +12,16 @@ const POSITION_ERROR: f32 = 10.0 / 16_777_216.0;
 
 /// A point of a triangle, and how far it can be from the exact plane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SurfacePoint {
-    pub(crate) position: Vec3<F32x8>,
+pub struct SurfacePoint {
+    /// Where it is.
+    pub position: Vec3<F32x8>,
     error: Vec3<F32x8>,
 }
 
 impl SurfacePoint {
     /// From barycentrics on the corners, never from o + t·d: the error does not grow with the distance travelled.
     #[inline(always)]
-    pub(crate) fn new(corners: &[Vec3<F32x8>; 3], bary: [F32x8; 2]) -> Self {
+    pub fn new(corners: &[Vec3<F32x8>; 3], bary: [F32x8; 2]) -> Self {
         let [b1, b2] = bary;
         let b0 = F32x8::ONE - b1 - b2;
         let blend = |c: [Vec3<F32x8>; 3]| (c[0] * b0).along(b1, c[1]).along(b2, c[2]);
@@ -30,7 +31,7 @@ impl SurfacePoint {
 
     /// The point moved off the plane to the side that the unit normal n points to, by at least its error.
     #[inline(always)]
-    pub(crate) fn off_plane(&self, n: Vec3<F32x8>) -> Vec3<F32x8> {
+    pub fn off_plane(&self, n: Vec3<F32x8>) -> Vec3<F32x8> {
         self.position.along(self.error.dot(n.abs()), n)
     }
 }

@@ -17,7 +17,7 @@ use crate::shade::{self, Context, Gathered};
 use crate::stats::{LargeSample, RenderStats, TileStats};
 use crate::world::World;
 use gonio_accel::{Accel, Hit8, Ray8, RayKind};
-use gonio_kernel::{F32x8, Mask8, Real, Rgb, U32x8, Vec3};
+use gonio_kernel::{F32x8, Mask8, Real, Rgb, U32x8};
 use rayon::prelude::*;
 use std::ops::{ControlFlow, Range};
 use std::time::Instant;
@@ -331,20 +331,16 @@ impl TileWorker {
         self.radiance.clear();
         self.radiance.resize(self.pixel.len(), [0.0; 3]);
 
-        let film = ctx.world.film;
-        let (width, height) = (F32x8::splat(film.width as f32), F32x8::splat(film.height as f32));
-        let two = F32x8::splat(2.0);
         for start in (0..self.pixel.len()).step_by(F32x8::LANES) {
             let lanes = (self.pixel.len() - start).min(F32x8::LANES);
             let path = U32x8::from_fn(|l| (start + l.min(lanes - 1)) as u32);
             let pixel = U32x8::from_fn(|l| self.pixel[path.lane(l) as usize]);
             let sample = U32x8::from_fn(|l| self.sample[path.lane(l) as usize]);
             let u = ctx.sampler.draw(pixel, sample, 0, Purpose::Camera);
-            let x = ((pixel & U32x8::splat(0xffff)).to_real() + u.unit(0)) * two / width - F32x8::ONE;
-            let y = F32x8::ONE - ((pixel >> 16).to_real() + u.unit(1)) * two / height;
-            let ray = Ray8::new(Vec3::broadcast(ctx.world.view.origin), ctx.world.view.directions(x, y));
+            let x = (pixel & U32x8::splat(0xffff)).to_real() + u.unit(0);
+            let y = (pixel >> 16).to_real() + u.unit(1);
             self.queue.push(
-                Ray8 { mask: Mask8::first(lanes), ..ray },
+                Ray8 { mask: Mask8::first(lanes), ..ctx.world.view.rays(x, y) },
                 Paths {
                     throughput: Rgb::splat(F32x8::ONE),
                     pdf: F32x8::ZERO,

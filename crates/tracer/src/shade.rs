@@ -20,7 +20,7 @@ use gonio_kernel::warp::{pdf_cosine_hemisphere, sample_cosine_hemisphere, sample
 use gonio_kernel::{Closure, F32x8, Mask, Mask8, Real, Rgb, Surface, U32x8, Vec3, each_lane};
 
 /// Shadow rays stop this much short of the light, relative to its distance: the rounding of the distance and of t.
-const SHORT_OF_LIGHT: f32 = 1.0 - 16.0 / 16_777_216.0;
+pub const SHORT_OF_LIGHT: f32 = 1.0 - 16.0 / 16_777_216.0;
 /// Russian roulette starts with this scattering event.
 const ROULETTE_FROM: u32 = 5;
 /// No path goes on with a higher probability than this once roulette has started.

@@ -10,8 +10,8 @@ use crate::plan::Plan;
 use crate::scene::{Camera, FilmSettings, Instance, Mesh, Scene, SceneError};
 use crate::texture::Texture;
 use glam::{DMat3, DVec3};
-use gonio_accel::Geometry;
-use gonio_kernel::{F32x8, Rgb, Vec3};
+use gonio_accel::{Geometry, Ray8};
+use gonio_kernel::{F32x8, Real, Rgb, Vec3};
 use std::path::Path;
 
 /// A scene made ready: geometry, shading data, lights, camera and plan.
@@ -46,11 +46,13 @@ pub(crate) struct Triangle {
 
 /// The camera, ready to make rays: origin and the vectors to the middle and to the edges of a picture one unit away.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct View {
-    pub(crate) origin: Vec3<f32>,
-    pub(crate) forward: Vec3<f32>,
-    pub(crate) right: Vec3<f32>,
-    pub(crate) up: Vec3<f32>,
+pub struct View {
+    origin: Vec3<f32>,
+    forward: Vec3<f32>,
+    right: Vec3<f32>,
+    up: Vec3<f32>,
+    /// Columns and rows of the picture.
+    size: [f32; 2],
 }
 
 impl World {
@@ -127,6 +129,16 @@ impl World {
         &self.geometry
     }
 
+    /// The camera's rays.
+    pub fn view(&self) -> View {
+        self.view
+    }
+
+    /// The corners of every triangle that emits light, in the order (instance, prim).
+    pub fn emitters(&self) -> impl Iterator<Item = [Vec3<f32>; 3]> {
+        self.lights.emitters().iter().map(|emitter| emitter.corners)
+    }
+
     /// Which effects the scene needs.
     pub fn plan(&self) -> Plan {
         self.plan
@@ -200,7 +212,8 @@ fn center(scene: &Scene) -> DVec3 {
 }
 
 impl View {
-    fn new(camera: &Camera, film: &FilmSettings, center: DVec3) -> Self {
+    /// The view of a camera in a world whose origin is at `center` of the scene's coordinates.
+    pub fn new(camera: &Camera, film: &FilmSettings, center: DVec3) -> Self {
         let forward = (camera.target - camera.origin).normalize();
         let right = forward.cross(camera.up).normalize();
         let up = right.cross(forward);
@@ -212,16 +225,24 @@ impl View {
             forward: narrow(forward),
             right: narrow(right * tan * aspect),
             up: narrow(up * tan),
+            size: [film.width as f32, film.height as f32],
         }
     }
 
-    /// Unit directions through places (x, y) of the picture, both in [−1, 1], y up.
+    /// Columns and rows of the picture.
+    pub fn size(&self) -> [f32; 2] {
+        self.size
+    }
+
+    /// The rays through places (x, y) of the picture in pixels, (0, 0) at the top left corner of the top left pixel.
     #[inline(always)]
-    pub(crate) fn directions(&self, x: F32x8, y: F32x8) -> Vec3<F32x8> {
-        Vec3::broadcast(self.forward)
-            .along(x, Vec3::broadcast(self.right))
-            .along(y, Vec3::broadcast(self.up))
-            .normalize()
+    pub fn rays(&self, x: F32x8, y: F32x8) -> Ray8 {
+        let [width, height] = self.size.map(F32x8::splat);
+        let two = F32x8::splat(2.0);
+        let (x, y) = (x * two / width - F32x8::ONE, F32x8::ONE - y * two / height);
+        let forward = Vec3::broadcast(self.forward);
+        let dir = forward.along(x, Vec3::broadcast(self.right)).along(y, Vec3::broadcast(self.up)).normalize();
+        Ray8::new(Vec3::broadcast(self.origin), dir)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The report: all checks, their sums, and the circumstances under which they were made.
 
-use crate::cpu;
+use crate::census::record::Log;
+use crate::environment::Environment;
 use gonio_lab::{Check, Effort, Options, Outcome};
 use serde::Serialize;
 
@@ -18,17 +19,8 @@ pub(super) struct Report {
     pub(super) environment: Environment,
     pub(super) instruments: Vec<Instrument>,
     pub(super) checks: Vec<Check>,
-}
-
-/// Where and how the program was built and run.
-#[derive(Debug, Serialize)]
-pub(super) struct Environment {
-    pub(super) target: &'static str,
-    pub(super) target_features: Vec<&'static str>,
-    pub(super) rustc: Option<&'static str>,
-    pub(super) debug_assertions: bool,
-    pub(super) processor: String,
-    pub(super) threads: usize,
+    /// The counts behind the checks of the census, and every disagreement.
+    pub(super) census: Log,
 }
 
 /// An instrument and what it proves.
@@ -43,6 +35,7 @@ impl Report {
     pub(super) fn new(
         options: &Options,
         checks: Vec<Check>,
+        census: Log,
         instruments: Vec<(&'static str, &'static str)>,
         seconds: f64,
     ) -> Self {
@@ -60,6 +53,7 @@ impl Report {
             environment: Environment::here(),
             instruments: instruments.into_iter().map(|(name, proves)| Instrument { name, proves }).collect(),
             checks,
+            census,
         }
     }
 
@@ -82,32 +76,6 @@ impl Report {
             Effort::Quick => "quick",
             Effort::Standard => "standard",
             Effort::Full => "full",
-        }
-    }
-}
-
-impl Environment {
-    fn here() -> Self {
-        let features = [
-            ("avx", cfg!(target_feature = "avx")),
-            ("avx2", cfg!(target_feature = "avx2")),
-            ("avx512f", cfg!(target_feature = "avx512f")),
-            ("bmi1", cfg!(target_feature = "bmi1")),
-            ("bmi2", cfg!(target_feature = "bmi2")),
-            ("f16c", cfg!(target_feature = "f16c")),
-            ("fma", cfg!(target_feature = "fma")),
-            ("lzcnt", cfg!(target_feature = "lzcnt")),
-            ("movbe", cfg!(target_feature = "movbe")),
-            ("neon", cfg!(target_feature = "neon")),
-            ("sse4.2", cfg!(target_feature = "sse4.2")),
-        ];
-        Self {
-            target: option_env!("GONIO_TARGET").unwrap_or(std::env::consts::ARCH),
-            target_features: features.iter().filter(|(_, on)| *on).map(|(name, _)| *name).collect(),
-            rustc: option_env!("GONIO_RUSTC"),
-            debug_assertions: cfg!(debug_assertions),
-            processor: cpu::name(),
-            threads: std::thread::available_parallelism().map_or(1, usize::from),
         }
     }
 }

@@ -1,9 +1,9 @@
 //! The furnace scenes themselves: their files, their answers, and how they are rendered.
 //!
-//! The files are those of the repository's `scenes/`, compiled in, so that an installed program has them too. They are
-//! written to the report's folder, where a scene that fails can be rendered again by hand.
+//! The files are written to the report's folder, where a scene that fails can be rendered again by hand.
 
-use anyhow::{Context, Result};
+use crate::shipped::{Files, shipped, unpack};
+use anyhow::Result;
 use gonio_accel::Intersect;
 use gonio_tracer::scene::{Color, Model, Scene, Sky};
 use gonio_tracer::{Backend, Plan, RenderSettings, Rendering, World, render};
@@ -11,12 +11,6 @@ use std::fmt;
 use std::iter;
 use std::ops::ControlFlow;
 use std::path::Path;
-
-macro_rules! shipped {
-    ($name:literal) => {
-        ($name, include_str!(concat!("../../../../../scenes/", $name)))
-    };
-}
 
 /// A scene whose radiance is known.
 pub(super) struct Furnace {
@@ -28,7 +22,7 @@ pub(super) struct Furnace {
     pub(super) noisy: bool,
     law: Law,
     /// Name and text; the scene file comes first.
-    files: &'static [(&'static str, &'static str)],
+    files: Files,
 }
 
 /// Where the answer comes from.
@@ -127,12 +121,7 @@ impl Furnace {
 
     /// Writes the files to a folder and reads the scene.
     pub(super) fn unpack(&self, folder: &Path) -> Result<Scene> {
-        std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
-        for (name, text) in self.files {
-            let path = folder.join(name);
-            std::fs::write(&path, text).with_context(|| format!("{}: cannot be written", path.display()))?;
-        }
-        Ok(Scene::load(&folder.join(self.files[0].0))?)
+        unpack(self.files, folder)
     }
 
     /// Renders the scene.

@@ -1,0 +1,32 @@
+//! Scenes of the repository's `scenes/`, compiled in, so that an installed program has them too.
+
+use anyhow::{Context, Result};
+use gonio_tracer::scene::Scene;
+use std::path::Path;
+
+/// Name and text of a scene's files; the scene file comes first.
+pub(crate) type Files = &'static [(&'static str, &'static str)];
+
+/// A file of the repository's `scenes/`.
+macro_rules! shipped {
+    ($name:literal) => {
+        ($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/", $name)))
+    };
+}
+pub(crate) use shipped;
+
+/// The Cornell box.
+pub(crate) const CORNELL_BOX: Files = &[shipped!("cornell-box.toml"), shipped!("cornell-box.obj")];
+
+/// Writes the files to a folder, which is made if it does not exist, and reads the scene.
+///
+/// # Errors
+/// If the folder cannot be written to.
+pub(crate) fn unpack(files: Files, folder: &Path) -> Result<Scene> {
+    std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
+    for (name, text) in files {
+        let path = folder.join(name);
+        std::fs::write(&path, text).with_context(|| format!("{}: cannot be written", path.display()))?;
+    }
+    Ok(Scene::load(&folder.join(files[0].0))?)
+}
