@@ -48,7 +48,7 @@ pub(crate) struct Triangle {
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     origin: Vec3<f32>,
-    forward: Vec3<f32>,
+    pub(crate) forward: Vec3<f32>,
     right: Vec3<f32>,
     up: Vec3<f32>,
     /// Columns and rows of the picture.
