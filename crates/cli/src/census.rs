@@ -23,7 +23,7 @@ pub(crate) mod record;
 pub(crate) mod specimen;
 pub(crate) mod topology;
 
-use answer::{Answer, Answers, Kind, compare};
+use answer::{Answer, Answers, Kind};
 use anyhow::{Context, Result};
 use family::Family;
 use gonio_accel::{Accel, Intersect, Ray8};
@@ -212,7 +212,7 @@ impl Stream {
         let ray = one(&self.packets[i].ray, lane);
         self.must_hit(i, lane) && self.told.iter().any(|told| told.lane(i, lane).leaks())
             || others.iter().zip(&observer.witnesses[1..]).any(|(told, witness)| {
-                compare(witness.standard, observer.specimen, &ray, &expected, &told.lane(i, lane)).is_some()
+                self.compare(witness.standard, observer.specimen, &ray, &expected, &told.lane(i, lane)).is_some()
             })
     }
 
@@ -236,7 +236,7 @@ impl Stream {
                     kinds.push(Kind::Leak);
                 }
                 if let (Some(witness), Some(oracle)) = (witness, &oracle) {
-                    kinds.extend(compare(witness.standard, observer.specimen, &ray, oracle, &answer));
+                    kinds.extend(self.compare(witness.standard, observer.specimen, &ray, oracle, &answer));
                 }
                 kinds.iter().for_each(|kind| row.note(*kind));
                 if !kinds.is_empty() {
@@ -254,6 +254,10 @@ impl Stream {
                 }
             }
         }
+    }
+
+    fn compare(&self, standard: Standard, specimen: &Specimen, ray: &aim::Ray, a: &Answer, b: &Answer) -> Option<Kind> {
+        answer::compare(standard, self.family.is_ordinary(), specimen, ray, a, b)
     }
 
     fn told_by_all(&self, observer: &Observer, i: usize, lane: usize) -> Vec<Told> {

@@ -21,7 +21,7 @@ use std::time::Instant;
 
 /// Cast the same rays with every backend and list every disagreement.
 ///
-/// Thirteen families of rays at several scales: from the scene's camera, bounced, towards lights, from anywhere, from
+/// Fourteen families of rays at several scales: from the scene's camera, bounced, towards lights, from anywhere, from
 /// surfaces; aimed at edges and vertices, along the axes, within planes, ending at a triangle, from far away, and from
 /// inside of closed surfaces. Each is asked for its nearest hit and for occlusion. Brute force is the arbiter. It looks at an
 /// even part of the rays, as the table says, and at every ray on which the others disagree. Exits with 0 if obvhs agrees with

@@ -15,8 +15,10 @@ pub(crate) enum Family {
     Shadow,
     /// From anywhere in any direction.
     Random,
-    /// From a point of a triangle.
+    /// From a point of a triangle, moved off it as a renderer does.
     Secondary,
+    /// From a point of a triangle, on it as far as rounding can tell.
+    OnSurface,
     /// At a point of an edge.
     Edge,
     /// At a vertex.
@@ -36,12 +38,13 @@ pub(crate) enum Family {
 }
 
 impl Family {
-    pub(crate) const ALL: [Self; 13] = [
+    pub(crate) const ALL: [Self; 14] = [
         Self::Camera,
         Self::Bounce,
         Self::Shadow,
         Self::Random,
         Self::Secondary,
+        Self::OnSurface,
         Self::Edge,
         Self::Vertex,
         Self::AxisParallel,
@@ -81,6 +84,7 @@ impl fmt::Display for Family {
             Self::Shadow => "shadow",
             Self::Random => "random",
             Self::Secondary => "secondary",
+            Self::OnSurface => "on-surface",
             Self::Edge => "edge-aimed",
             Self::Vertex => "vertex-aimed",
             Self::AxisParallel => "axis-parallel",

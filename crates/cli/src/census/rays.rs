@@ -109,7 +109,8 @@ pub(crate) fn bounces(specimen: &Specimen, rays: &[Ray8], hits: &[Hit8], seed: u
     })
 }
 
-/// Rays from the hits that end just short of a point of a light, or of the bounds if there is none.
+/// Rays from the hits that end just short of a point of a light, or of the bounds if there is none. Misses, and points
+/// below the surface, become dead lanes.
 pub(crate) fn shadows(specimen: &Specimen, rays: &[Ray8], hits: &[Hit8], seed: u64, first: u64) -> Vec<Ray8> {
     from_hits(specimen, rays, hits, first, |start, index| {
         let to = Vec3::from_lanes(|l| {
@@ -120,9 +121,10 @@ pub(crate) fn shadows(specimen: &Specimen, rays: &[Ray8], hits: &[Hit8], seed: u
             }
         }) - start.origin;
         let distance = to.length();
-        let some = distance.gt(F32x8::ZERO);
-        let dir = Vec3::select(some, to * distance.recip(), start.normal);
-        Ray8 { t_max: distance * F32x8::splat(SHORT_OF_LIGHT), ..Ray8::new(start.origin, dir) }
+        // No renderer asks for light from below the surface.
+        let above = to.dot(start.normal).gt(F32x8::ZERO);
+        let dir = Vec3::select(above, to * distance.recip(), start.normal);
+        Ray8 { t_max: distance * F32x8::splat(SHORT_OF_LIGHT), mask: above, ..Ray8::new(start.origin, dir) }
     })
 }
 
@@ -152,7 +154,7 @@ fn from_hits(
         let normal = up * F32x8::ONE.copysign(-up.dot(ray.dir));
         let start = Start { origin: SurfacePoint::new(&corners, hit.bary).off_plane(normal), normal };
         let made = make(&start, (first + i as u64) * 8);
-        Ray8 { mask: ray.mask & Mask8::from_bits(live), ..made }
+        Ray8 { mask: ray.mask & made.mask & Mask8::from_bits(live), ..made }
     });
     made.collect()
 }
@@ -280,9 +282,21 @@ impl Dice<'_> {
                 let aside = if self.pick(14, 2) == 0 { self.on_triangle() } else { to };
                 self.aimed(self.towards(origin, aside), target)
             }
-            Family::Secondary => self.open(self.on_triangle(), self.direction(10)),
+            Family::Secondary => self.secondary(),
+            Family::OnSurface => self.open(self.on_triangle(), self.direction(10)),
             _ => self.open(self.around(), self.direction(10)),
         }
+    }
+
+    /// From a point of a triangle, moved off it to the side that the ray leaves to.
+    fn secondary(&self) -> Ray {
+        let [a, b, c] = self.triangle();
+        let bary = sample_uniform_triangle([self.u(3), self.u(4)]).map(F32x8::splat);
+        let dir = self.direction(10);
+        let normal = (b - a).cross(c - a).normalize_or(dir);
+        let normal = normal * 1.0_f32.copysign(normal.dot(dir));
+        let point = SurfacePoint::new(&[a, b, c].map(Vec3::broadcast), bary).off_plane(Vec3::broadcast(normal));
+        self.open(Vec3::new(point.x.lane(0), point.y.lane(0), point.z.lane(0)), dir)
     }
 
     fn axis_parallel(&self) -> Ray {
