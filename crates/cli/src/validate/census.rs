@@ -39,7 +39,7 @@ const FAULT_RAYS: u64 = 1 << 11;
 pub(super) fn run(options: &Options, out: &Path, sink: &mut dyn FnMut(Check)) -> Result<Log> {
     let mut log = Log::default();
     let mut all = specimens();
-    all.push(Specimen::of_world("cornell-box", &World::new(&unpack(&CORNELL_BOX, &out.join("scenes"))?)?));
+    all.push(Specimen::of_world("cornell-box", &World::new(&unpack(CORNELL_BOX, &out.join("scenes"))?)?));
     for specimen in &all {
         measure(specimen, options, &mut log, sink)?;
     }
