@@ -3,6 +3,7 @@
 //! A mesh keeps `f32` positions in its own coordinates; an instance places it by an affine map in `f64`. World vertices are
 //! formed in `f64` and rounded once, here and nowhere else, so that every backend and the shading see the same bits.
 
+use crate::ray::NO_HIT;
 use gonio_kernel::Vec3;
 use thiserror::Error;
 
@@ -67,6 +68,28 @@ pub enum GeometryError {
 pub struct Geometry {
     meshes: Vec<Mesh>,
     instances: Vec<Instance>,
+    order: Order,
+}
+
+/// All triangles of all instances as one list, in the order (instance, prim), without a list: an entry per instance.
+#[derive(Clone, Debug)]
+pub(crate) struct Order {
+    /// Where each instance's triangles start, and at the end, how many there are.
+    starts: Vec<u32>,
+    /// The mesh of each instance.
+    meshes: Vec<u32>,
+}
+
+impl Order {
+    /// The triangle at a place below the number of all.
+    #[inline]
+    pub(crate) fn id(&self, index: u32) -> TriangleId {
+        let instance = match self.meshes.len() {
+            1 => 0,
+            _ => self.starts.partition_point(|&start| start <= index) - 1, // the first start is 0
+        };
+        TriangleId { prim: index - self.starts[instance], mesh: self.meshes[instance], instance: instance as u32 }
+    }
 }
 
 impl Instance {
@@ -95,6 +118,7 @@ impl Geometry {
             }
         }
         let mut count = 0_usize;
+        let mut starts = vec![0];
         for (i, instance) in instances.iter().enumerate() {
             let Some(mesh) = meshes.get(instance.mesh as usize) else {
                 return Err(GeometryError::NoSuchMesh { instance: i, mesh: instance.mesh, meshes: meshes.len() });
@@ -104,11 +128,13 @@ impl Geometry {
                 return Err(GeometryError::NotFinite { instance: i, vertex });
             }
             count = count.saturating_add(mesh.triangles.len());
+            starts.push(u32::try_from(count).unwrap_or(u32::MAX));
         }
         if count >= 1 << 31 {
             return Err(GeometryError::TooMany(count));
         }
-        Ok(Self { meshes, instances })
+        let order = Order { starts, meshes: instances.iter().map(|instance| instance.mesh).collect() };
+        Ok(Self { meshes, instances, order })
     }
 
     /// One mesh, where it is.
@@ -129,16 +155,26 @@ impl Geometry {
         &self.instances
     }
 
+    /// How many triangles all instances have together.
+    pub fn triangle_count(&self) -> usize {
+        self.order.starts.last().map_or(0, |&count| count as usize)
+    }
+
+    pub(crate) fn order(&self) -> &Order {
+        &self.order
+    }
+
+    /// Triangle `index` in the order (instance, prim), below [`Geometry::triangle_count`], in the world.
+    pub fn world_triangle(&self, index: u32) -> WorldTriangle {
+        let id = self.order.id(index);
+        let (instance, mesh) = (&self.instances[id.instance as usize], &self.meshes[id.mesh as usize]);
+        let corner = |v: u32| instance.to_world(mesh.positions[v as usize]).into();
+        WorldTriangle { corners: mesh.triangles[id.prim as usize].map(corner), id }
+    }
+
     /// All triangles of all instances in the world, in the order (instance, prim).
     pub fn world_triangles(&self) -> impl Iterator<Item = WorldTriangle> {
-        self.instances.iter().enumerate().flat_map(|(i, instance)| {
-            let mesh = &self.meshes[instance.mesh as usize];
-            let corner = |v: u32| instance.to_world(mesh.positions[v as usize]).into();
-            mesh.triangles.iter().enumerate().map(move |(prim, t)| WorldTriangle {
-                corners: t.map(corner),
-                id: TriangleId { prim: prim as u32, mesh: instance.mesh, instance: i as u32 },
-            })
-        })
+        (0..self.triangle_count() as u32).map(|index| self.world_triangle(index))
     }
 }
 
@@ -161,3 +197,6 @@ pub struct TriangleId {
     /// Instance within the geometry.
     pub instance: u32,
 }
+
+/// The id of a miss.
+pub(crate) const NOTHING: TriangleId = TriangleId { prim: NO_HIT, mesh: NO_HIT, instance: NO_HIT };

@@ -5,11 +5,12 @@
 //! triangles at a time. So few triangles that a tree does not pay ([`few`]) are kept in a list. The traversal of `obvhs` itself is not used: it is several times slower and its triangle test leaks.
 
 mod few;
+mod parts;
 mod tree;
 
 use crate::Accel;
 use crate::brute::scalar_hit;
-use crate::geometry::Geometry;
+use crate::geometry::{Geometry, NOTHING, TriangleId};
 use crate::ray::{Hit, Hit8, NO_HIT, Opacity, Ray8, RayKind};
 use crate::triangle::{Beam, Crossing, Intersect, intersect, intersect_fast};
 use few::Few;
@@ -18,21 +19,36 @@ use tree::{Child, Node, Tree};
 
 /// A tree of eight-wide nodes over the triangles of a geometry, or a list of a few.
 #[derive(Clone, Debug)]
-pub struct Obvhs {
-    tree: Tree,
-    few: Option<Few>,
-    intersect: Intersect,
+pub struct Obvhs(Structure);
+
+#[derive(Clone, Debug)]
+enum Structure {
+    Tree(Tree, Intersect),
+    List(Few),
 }
 
 impl Obvhs {
     /// Builds the tree: deterministic, O(n log n). A list of few triangles keeps the watertight test, which costs it nothing.
     pub fn new(geometry: &Geometry, intersect: Intersect) -> Self {
-        Self { few: Few::of(geometry), ..Self::always_tree(geometry, intersect) }
+        Self::with_progress(geometry, intersect, &mut |_| ())
+    }
+
+    /// Builds the tree and tells now and then of how many triangles it is done.
+    pub fn with_progress(geometry: &Geometry, intersect: Intersect, progress: &mut dyn FnMut(usize)) -> Self {
+        Self(match Few::of(geometry) {
+            Some(few) => Structure::List(few),
+            None => Structure::Tree(Tree::build(geometry, progress), intersect),
+        })
     }
 
     /// Builds a tree even where a list would be faster: for tests of the tree.
     pub fn always_tree(geometry: &Geometry, intersect: Intersect) -> Self {
-        Self { tree: Tree::build(geometry), few: None, intersect }
+        Self(Structure::Tree(Tree::build(geometry, &mut |_| ()), intersect))
+    }
+
+    #[cfg(test)]
+    fn of_tree(tree: Tree) -> Self {
+        Self(Structure::Tree(tree, Intersect::Robust))
     }
 }
 
@@ -42,18 +58,18 @@ impl Accel for Obvhs {
     }
 
     fn closest(&self, _kind: RayKind, rays: &[Ray8], hits: &mut [Hit8]) {
-        match (&self.few, self.intersect) {
-            (Some(few), _) => few.closest(rays, hits),
-            (None, Intersect::Robust) => self.closest_in_tree::<false>(rays, hits),
-            (None, Intersect::Fast) => self.closest_in_tree::<true>(rays, hits),
+        match &self.0 {
+            Structure::List(few) => few.closest(rays, hits),
+            Structure::Tree(tree, Intersect::Robust) => tree.closest::<false>(rays, hits),
+            Structure::Tree(tree, Intersect::Fast) => tree.closest::<true>(rays, hits),
         }
     }
 
     fn occluded(&self, _kind: RayKind, rays: &[Ray8], filter: Option<&dyn Opacity>, blocked: &mut [Mask8]) {
-        match (&self.few, self.intersect) {
-            (Some(few), _) => few.occluded(rays, filter, blocked),
-            (None, Intersect::Robust) => self.occluded_in_tree::<false>(rays, filter, blocked),
-            (None, Intersect::Fast) => self.occluded_in_tree::<true>(rays, filter, blocked),
+        match &self.0 {
+            Structure::List(few) => few.occluded(rays, filter, blocked),
+            Structure::Tree(tree, Intersect::Robust) => tree.occluded::<false>(rays, filter, blocked),
+            Structure::Tree(tree, Intersect::Fast) => tree.occluded::<true>(rays, filter, blocked),
         }
     }
 }
@@ -89,11 +105,11 @@ fn test<const FAST: bool>(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: f32, t
     if FAST { intersect_fast(beam, corners, t_min, t_max) } else { intersect(beam, corners, t_min, t_max) }
 }
 
-impl Obvhs {
-    fn closest_in_tree<const FAST: bool>(&self, rays: &[Ray8], hits: &mut [Hit8]) {
-        let mut stack = Vec::with_capacity(self.tree.stack_size());
+impl Tree {
+    fn closest<const FAST: bool>(&self, rays: &[Ray8], hits: &mut [Hit8]) {
+        let mut stack = Vec::with_capacity(self.stack_size());
         for (ray, hit) in rays.iter().zip(hits) {
-            let beam = Beam::new(ray.origin, ray.dir, self.tree.lo, self.tree.hi);
+            let beam = Beam::new(ray.origin, ray.dir, self.lo, self.hi);
             let mut found = [MISS; F32x8::LANES];
             for_each_lane(ray.mask, |lane| {
                 let (one, t_min, t_max) = (beam.splat_lane(lane), ray.t_min.lane(lane), ray.t_max.lane(lane));
@@ -103,10 +119,10 @@ impl Obvhs {
         }
     }
 
-    fn occluded_in_tree<const FAST: bool>(&self, rays: &[Ray8], filter: Option<&dyn Opacity>, blocked: &mut [Mask8]) {
-        let mut stack = Vec::with_capacity(self.tree.stack_size());
+    fn occluded<const FAST: bool>(&self, rays: &[Ray8], filter: Option<&dyn Opacity>, blocked: &mut [Mask8]) {
+        let mut stack = Vec::with_capacity(self.stack_size());
         for ((packet, ray), blocked) in rays.iter().enumerate().zip(blocked) {
-            let beam = Beam::new(ray.origin, ray.dir, self.tree.lo, self.tree.hi);
+            let beam = Beam::new(ray.origin, ray.dir, self.lo, self.hi);
             let mut bits = 0;
             for_each_lane(ray.mask, |lane| {
                 let one = beam.splat_lane(lane);
@@ -125,26 +141,30 @@ impl Obvhs {
         let up = beam.points_up();
         let slack = beam.slack();
         stack.clear();
-        stack.push((f32::NEG_INFINITY, self.tree.root));
+        stack.push((f32::NEG_INFINITY, self.root));
         while let Some((t_near, child)) = stack.pop() {
             // Not ≥: a tie may lie behind this box and have the smaller index.
             if t_near > t_best + slack {
                 continue;
             }
-            match self.tree.open(child) {
+            match self.open(child) {
                 tree::Opened::Node(node) => push_children(node, beam, up, t_min - slack, t_best + slack, stack),
                 tree::Opened::Leaf(leaf) => {
                     let c = test::<FAST>(beam, &leaf.corners, t_min, t_best);
                     for_each_lane(c.mask, |lane| {
                         let (t, index) = (c.t.lane(lane), leaf.index[lane]);
                         if t < best.t || (t == best.t && index < best_index) {
-                            best = scalar_hit(&c, lane, self.tree.ids[index as usize]);
+                            best = scalar_hit(&c, lane, NOTHING);
                             best_index = index;
                             t_best = t;
                         }
                     });
                 }
             }
+        }
+        if best_index != NO_HIT {
+            let TriangleId { prim, mesh, instance } = self.order.id(best_index);
+            best = Hit { prim, mesh, instance, ..best };
         }
         best
     }
@@ -160,16 +180,16 @@ impl Obvhs {
         let up = beam.points_up();
         let slack = beam.slack();
         stack.clear();
-        stack.push((f32::NEG_INFINITY, self.tree.root));
+        stack.push((f32::NEG_INFINITY, self.root));
         while let Some((_, child)) = stack.pop() {
-            match self.tree.open(child) {
+            match self.open(child) {
                 tree::Opened::Node(node) => push_children(node, beam, up, t_min - slack, t_max + slack, stack),
                 tree::Opened::Leaf(leaf) => {
                     let c = test::<FAST>(beam, &leaf.corners, t_min, t_max);
                     let blocks = |lane: usize| match filter {
                         None => true,
                         Some((f, ray)) => {
-                            f.blocks(ray, &scalar_hit(&c, lane, self.tree.ids[leaf.index[lane] as usize]))
+                            f.blocks(ray, &scalar_hit(&c, lane, self.order.id(leaf.index[lane])))
                         }
                     };
                     let mut bits = c.mask.to_bits();

@@ -6,7 +6,7 @@
 //! results are those of the tree and of `Brute`.
 
 use crate::brute::{bounds, filtered};
-use crate::geometry::{Geometry, TriangleId, WorldTriangle};
+use crate::geometry::{Geometry, NOTHING, TriangleId, WorldTriangle};
 use crate::ray::{Hit8, NO_HIT, Opacity, Ray8};
 use crate::triangle::{Beam, Edges, Plane, barycentric};
 use gonio_kernel::{F32x8, Mask, Mask8, Real, U32x8, Vec3, each_lane};
@@ -133,9 +133,6 @@ impl Few {
         }
     }
 }
-
-/// The id of a miss.
-const NOTHING: TriangleId = TriangleId { prim: NO_HIT, mesh: NO_HIT, instance: NO_HIT };
 
 #[inline(always)]
 fn for_each_bit(mut bits: u64, mut f: impl FnMut(usize)) {

@@ -3,10 +3,11 @@
 //! A subtree of at most eight triangles becomes one leaf block, because eight triangles cost as much to test as one. An
 //! inner node starts with the two children of its binary node and keeps opening the one of largest area that is too large
 //! for a block; slots that remain open blocks whose halves are smaller than the whole. The surface area is what a random
-//! ray's chance to enter a box is proportional to (Goldsmith & Salmon 1987).
+//! ray's chance to enter a box is proportional to (Goldsmith & Salmon 1987). Beyond a million triangles the tree is made of
+//! parts ([`parts`]), each collapsed before the next is built, and a small tree over the parts.
 
-use crate::brute::bounds;
-use crate::geometry::{Geometry, TriangleId, WorldTriangle};
+use super::parts;
+use crate::geometry::{Geometry, Order};
 use gonio_kernel::{F32x8, Vec3};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -34,7 +35,7 @@ pub(super) struct Node {
 #[derive(Clone, Debug)]
 pub(super) struct Leaf {
     pub(super) corners: [Vec3<F32x8>; 3],
-    /// Place in [`Tree::ids`], in the order of (instance, prim).
+    /// Place in the order of (instance, prim).
     pub(super) index: [u32; WIDTH],
 }
 
@@ -50,27 +51,49 @@ pub(super) struct Tree {
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
     pub(super) root: Child,
-    pub(super) ids: Vec<TriangleId>,
+    pub(super) order: Order,
     pub(super) lo: Vec3<f32>,
     pub(super) hi: Vec3<f32>,
     depth: usize,
 }
 
 impl Tree {
-    pub(super) fn build(geometry: &Geometry) -> Self {
-        let triangles: Vec<WorldTriangle> = geometry.world_triangles().collect();
-        let (lo, hi) = bounds(&triangles);
-        let boxes: Vec<Aabb> = triangles.iter().map(|t| Aabb::from_points(&t.corners.map(point))).collect();
-        let params = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::medium_build() };
-        let mut unused_timer = std::time::Duration::ZERO;
-        let binary = build_bvh2(&boxes, params, &mut unused_timer);
-        let ids = triangles.iter().map(|t| t.id).collect();
-        let mut tree = Self { nodes: Vec::new(), leaves: Vec::new(), root: Child(0), ids, lo, hi, depth: 1 };
-        if binary.nodes.is_empty() || triangles.is_empty() {
-            tree.nodes.push(Node::empty());
-        } else {
-            let sizes = subtree_sizes(&binary);
-            Collapse { binary: &binary, sizes: &sizes, triangles: &triangles }.run(&mut tree);
+    /// The tree over all triangles; `progress` is told how many are done.
+    pub(super) fn build(geometry: &Geometry, progress: &mut dyn FnMut(usize)) -> Self {
+        Self::in_parts(geometry, parts::MOST, progress)
+    }
+
+    /// The tree in parts of at most so many triangles.
+    pub(super) fn in_parts(geometry: &Geometry, most: usize, progress: &mut dyn FnMut(usize)) -> Self {
+        let none = Vec3::splat(0.0);
+        let order = geometry.order().clone();
+        let mut tree =
+            Self { nodes: Vec::new(), leaves: Vec::new(), root: Child(0), order, lo: none, hi: none, depth: 1 };
+        let (triangles, ends) = parts::split(geometry, most);
+        let mut roots: Vec<(Aabb, Child)> = Vec::new();
+        let mut start = 0;
+        for end in ends {
+            let part = &triangles[start..end];
+            let boxes: Vec<Aabb> = part.iter().map(|&triangle| bounds_of(geometry, triangle)).collect();
+            if let Some((bounds, binary)) = binary(&boxes) {
+                drop(boxes);
+                let leaf = |tree: &mut Self, node| tree.block(geometry, &binary, part, node);
+                roots.push((bounds, Collapse::new(&binary, WIDTH).run(&mut tree, leaf)));
+            }
+            start = end;
+            progress(end);
+        }
+        let boxes: Vec<Aabb> = roots.iter().map(|root| root.0).collect();
+        match (binary(&boxes), &roots[..]) {
+            (None, _) => tree.nodes.push(Node::empty()),
+            (Some((bounds, _)), [root]) => (tree.root, tree.lo, tree.hi) = (root.1, vector(bounds.min), vector(bounds.max)),
+            (Some((bounds, binary)), _) => {
+                let below = std::mem::replace(&mut tree.depth, 1);
+                let part = |_: &mut Self, node| roots[primitives(&binary, node)[0] as usize].1;
+                tree.root = Collapse::new(&binary, 1).run(&mut tree, part);
+                tree.depth += below;
+                (tree.lo, tree.hi) = (vector(bounds.min), vector(bounds.max));
+            }
         }
         tree
     }
@@ -97,8 +120,21 @@ impl Node {
     }
 }
 
-fn point(v: Vec3<f32>) -> glam::Vec3A {
-    glam::Vec3A::new(v.x, v.y, v.z)
+/// The box of a triangle of the geometry.
+pub(super) fn bounds_of(geometry: &Geometry, triangle: u32) -> Aabb {
+    Aabb::from_points(&geometry.world_triangle(triangle).corners.map(|v| glam::Vec3A::new(v.x, v.y, v.z)))
+}
+
+fn vector(v: glam::Vec3A) -> Vec3<f32> {
+    Vec3::new(v.x, v.y, v.z)
+}
+
+/// The bounds and the binary tree of boxes, if there are any.
+fn binary(boxes: &[Aabb]) -> Option<(Aabb, Bvh2)> {
+    let bounds = boxes.iter().copied().reduce(|a, b| a.union(&b))?;
+    let params = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::medium_build() };
+    let mut unused_timer = std::time::Duration::ZERO;
+    Some((bounds, build_bvh2(boxes, params, &mut unused_timer)))
 }
 
 /// How many triangles lie below each binary node.
@@ -127,17 +163,30 @@ fn inner(binary: &Bvh2, node: usize) -> Option<[usize; 2]> {
     (n.prim_count == 0).then_some([n.first_index as usize, n.first_index as usize + 1])
 }
 
-struct Collapse<'a> {
-    binary: &'a Bvh2,
-    sizes: &'a [u32],
-    triangles: &'a [WorldTriangle],
+/// The primitives of a leaf of the binary tree.
+fn primitives(binary: &Bvh2, leaf: usize) -> &[u32] {
+    let b = &binary.nodes[leaf];
+    &binary.primitive_indices[b.first_index as usize..(b.first_index + b.prim_count) as usize]
 }
 
-impl Collapse<'_> {
-    fn run(&self, tree: &mut Tree) {
-        // (binary node, wide node that stands for it, its depth)
+struct Collapse<'a> {
+    binary: &'a Bvh2,
+    sizes: Vec<u32>,
+    /// A subtree of at most so many primitives becomes a leaf.
+    most: usize,
+}
+
+impl<'a> Collapse<'a> {
+    fn new(binary: &'a Bvh2, most: usize) -> Self {
+        Self { binary, sizes: subtree_sizes(binary), most }
+    }
+
+    /// Appends the wide nodes and returns their root; `leaf` makes a child of a binary node.
+    fn run(&self, tree: &mut Tree, mut leaf: impl FnMut(&mut Tree, usize) -> Child) -> Child {
+        let root = tree.nodes.len();
         tree.nodes.push(Node::empty());
-        let mut work = vec![(0_usize, 0_usize, 1_usize)];
+        // (binary node, wide node that stands for it, its depth)
+        let mut work = vec![(0_usize, root, 1_usize)];
         while let Some((binary, wide, depth)) = work.pop() {
             tree.depth = tree.depth.max(depth);
             let mut planes = [[f32::INFINITY; WIDTH]; 3].map(|lo| [lo, [f32::NEG_INFINITY; WIDTH]]);
@@ -148,9 +197,8 @@ impl Collapse<'_> {
                     planes[0][slot] = b.min[axis];
                     planes[1][slot] = b.max[axis];
                 }
-                children[slot] = if self.sizes[n] as usize <= WIDTH {
-                    tree.leaves.push(self.leaf(n));
-                    Child((tree.leaves.len() - 1) as u32 | LEAF)
+                children[slot] = if self.sizes[n] as usize <= self.most {
+                    leaf(tree, n)
                 } else {
                     tree.nodes.push(Node::empty());
                     work.push((n, tree.nodes.len() - 1, depth + 1));
@@ -161,6 +209,7 @@ impl Collapse<'_> {
                 |s: usize| Vec3::new(F32x8::new(planes[0][s]), F32x8::new(planes[1][s]), F32x8::new(planes[2][s]));
             tree.nodes[wide] = Node { planes: [side(0), side(1)], children };
         }
+        Child(root as u32)
     }
 
     /// The binary nodes that become the children of the wide node for `node`.
@@ -168,11 +217,11 @@ impl Collapse<'_> {
         let area = |n: usize| self.binary.nodes[n].aabb.half_area();
         let mut children = inner(self.binary, node).map_or(vec![node], Vec::from);
         while children.len() < WIDTH {
-            // How much opening a child is worth: one too large for a block must be opened some day, the largest first.
+            // How much opening a child is worth: one too large for a leaf must be opened some day, the largest first.
             let worth = |n: usize| {
                 let [a, b] = inner(self.binary, n)?;
                 let gain = area(n) - area(a) - area(b);
-                let must = self.sizes[n] as usize > WIDTH;
+                let must = self.sizes[n] as usize > self.most;
                 (must || gain > 0.0).then_some((must, if must { area(n) } else { gain }))
             };
             let best = children.iter().enumerate().filter_map(|(i, &n)| Some((worth(n)?, i)));
@@ -183,26 +232,71 @@ impl Collapse<'_> {
         }
         children
     }
+}
 
-    fn leaf(&self, node: usize) -> Leaf {
+impl Tree {
+    /// Appends a block of the triangles below a binary node; its primitives are places in `part`.
+    fn block(&mut self, geometry: &Geometry, binary: &Bvh2, part: &[u32], node: usize) -> Child {
         let mut index = Vec::with_capacity(WIDTH);
         let mut stack = vec![node];
         while let Some(n) = stack.pop() {
-            match inner(self.binary, n) {
+            match inner(binary, n) {
                 Some(children) => stack.extend(children),
-                None => {
-                    let b = &self.binary.nodes[n];
-                    let range = b.first_index as usize..(b.first_index + b.prim_count) as usize;
-                    index.extend(&self.binary.primitive_indices[range]);
-                }
+                None => index.extend(primitives(binary, n).iter().map(|&at| part[at as usize])),
             }
         }
         index.sort_unstable();
         let index: [u32; WIDTH] = std::array::from_fn(|i| index.get(i).copied().unwrap_or(index[0]));
-        let axis = |corner: usize, f: fn(Vec3<f32>) -> f32| {
-            F32x8::new(index.map(|i| f(self.triangles[i as usize].corners[corner])))
-        };
-        let corners = [0, 1, 2].map(|c| Vec3::new(axis(c, |v| v.x), axis(c, |v| v.y), axis(c, |v| v.z)));
-        Leaf { corners, index }
+        let corners = index.map(|i| geometry.world_triangle(i).corners);
+        let corners = [0, 1, 2].map(|c| Vec3::from_lanes(|l| corners[l][c]));
+        self.leaves.push(Leaf { corners, index });
+        Child((self.leaves.len() - 1) as u32 | LEAF)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Accel, Brute, Hit8, Mesh, Obvhs, Ray8, RayKind};
+
+    /// Waves of n × n squares, of which a strip is one point, so that no plane can part it.
+    fn waves(n: u32) -> Geometry {
+        let at = |x: u32, y: u32| y * (n + 1) + x;
+        let height = |x: u32, y: u32| ((x * 37 + y * 61) % 17) as f32 * 0.1;
+        let position = |x: u32, y: u32| if y < 4 { [0.0; 3] } else { [x as f32, height(x, y), y as f32] };
+        let positions = (0..=n).flat_map(|y| (0..=n).map(move |x| position(x, y))).collect();
+        let squares = (0..n).flat_map(|y| (0..n).map(move |x| (x, y)));
+        let triangles = squares
+            .flat_map(|(x, y)| [[at(x, y), at(x + 1, y), at(x + 1, y + 1)], [at(x, y), at(x + 1, y + 1), at(x, y + 1)]])
+            .collect();
+        Geometry::of_mesh(Mesh { positions, triangles }).unwrap()
+    }
+
+    #[test]
+    fn a_tree_in_parts_finds_what_brute_finds() {
+        let geometry = waves(24);
+        let brute = Brute::new(&geometry);
+        for most in [1, 7, 100, 1000, parts::MOST] {
+            let mut told = Vec::new();
+            let tree = Tree::in_parts(&geometry, most, &mut |done| told.push(done));
+            assert_eq!(told.last(), Some(&geometry.triangle_count()));
+            assert!(told.len() >= geometry.triangle_count() / most);
+            let tree = Obvhs::of_tree(tree);
+            let mut met = 0;
+            for i in 0..400 {
+                let lane = |l: usize| (i * 8 + l) as f32;
+                let origin = Vec3::from_lanes(|l| Vec3::new(lane(l) * 0.618 % 24.0, 5.0, lane(l) * 0.414 % 24.0));
+                let dir = Vec3::from_lanes(|l| {
+                    Vec3::new(lane(l) * 0.732 % 2.0 - 1.0, -0.3, lane(l) * 0.236 % 2.0 - 1.0).normalize()
+                });
+                let rays = [Ray8::new(origin, dir)];
+                let (mut a, mut b) = ([Hit8::miss()], [Hit8::miss()]);
+                brute.closest(RayKind::Incoherent, &rays, &mut a);
+                tree.closest(RayKind::Incoherent, &rays, &mut b);
+                assert_eq!(format!("{a:?}"), format!("{b:?}"));
+                met += a[0].t.to_array().iter().filter(|t| t.is_finite()).count();
+            }
+            assert!(met > 1000, "{met} of 3200 rays meet something");
+        }
     }
 }
