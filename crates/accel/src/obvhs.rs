@@ -188,9 +188,7 @@ impl Tree {
                     let c = test::<FAST>(beam, &leaf.corners, t_min, t_max);
                     let blocks = |lane: usize| match filter {
                         None => true,
-                        Some((f, ray)) => {
-                            f.blocks(ray, &scalar_hit(&c, lane, self.order.id(leaf.index[lane])))
-                        }
+                        Some((f, ray)) => f.blocks(ray, &scalar_hit(&c, lane, self.order.id(leaf.index[lane]))),
                     };
                     let mut bits = c.mask.to_bits();
                     while bits != 0 {

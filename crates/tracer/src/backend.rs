@@ -1,5 +1,6 @@
 //! The choice of a ray-casting backend.
 
+use crate::scene::{Loading, Stage};
 #[cfg(feature = "embree")]
 use gonio_accel::Embree;
 use gonio_accel::{Accel, Brute, Geometry, Intersect, Obvhs};
@@ -53,9 +54,25 @@ impl Backend {
     /// # Errors
     /// If the backend lacks something that it needs, such as memory or its library.
     pub fn build(self, geometry: &Geometry, intersect: Intersect) -> Result<Box<dyn Accel>, BackendError> {
+        self.build_with(geometry, intersect, &mut |_| ())
+    }
+
+    /// Like [`Backend::build`]; `progress` is told of how many triangles it is done, by those backends that know.
+    ///
+    /// # Errors
+    /// If the backend lacks something that it needs, such as memory or its library.
+    pub fn build_with(
+        self,
+        geometry: &Geometry,
+        intersect: Intersect,
+        progress: &mut dyn FnMut(Loading),
+    ) -> Result<Box<dyn Accel>, BackendError> {
+        let of = geometry.triangle_count() as u64;
+        let mut tell = |done: usize| progress(Loading { stage: Stage::Building, done: done as u64, of });
+        tell(0);
         Ok(match self {
             Self::Brute => Box::new(Brute::new(geometry)),
-            Self::Obvhs => Box::new(Obvhs::new(geometry, intersect)),
+            Self::Obvhs => Box::new(Obvhs::with_progress(geometry, intersect, &mut tell)),
             #[cfg(feature = "embree")]
             Self::Embree => {
                 let built = Embree::new(geometry, intersect);

@@ -76,10 +76,18 @@ impl ShadingPoints {
         let normal = winding * side;
 
         let mut shading = normal;
+        let by_vertex = plan.smooth_normals || plan.textures || plan.tangents;
+        let vertices = if by_vertex {
+            each_lane(|l| {
+                let (instance, prim) = batch.hit_place(l);
+                world.vertex_indices(instance, prim)
+            })
+        } else {
+            [[0; 3]; F32x8::LANES]
+        };
         if plan.smooth_normals {
-            let flat = [Vec3::new(0.0, 0.0, 0.0); 3];
-            let normals = each_lane(|l| world.normals.get(index[l]).unwrap_or(&flat));
-            let at = |c: usize| Vec3::from_lanes(|l| normals[l][c]);
+            let flat = Vec3::new(0.0, 0.0, 0.0);
+            let at = |c: usize| Vec3::from_lanes(|l| world.normals.get(vertices[l][c]).copied().unwrap_or(flat));
             let b0 = F32x8::ONE - bary[0] - bary[1];
             let n = ((at(0) * b0).along(bary[0], at(1)).along(bary[1], at(2)) * side).normalize_or(normal);
             // A shading normal that does not face the viewer, or that leans behind the surface, is of no use.
@@ -91,8 +99,7 @@ impl ShadingPoints {
         let (x, y) = tangents(shading); // unit already: no need to normalise again
         let mut frame = Frame { x, y, z: shading };
         if (plan.textures || plan.tangents) && !world.uvs.is_empty() {
-            let uvs = each_lane(|l| &world.uvs[index[l]]);
-            let at = |c: usize, k: usize| F32x8::from_fn(|l| uvs[l][c][k]);
+            let at = |c: usize, k: usize| F32x8::from_fn(|l| world.uvs[vertices[l][c]][k]);
             let [u, v] = [[at(0, 0), at(1, 0), at(2, 0)], [at(0, 1), at(1, 1), at(2, 1)]];
             let b0 = F32x8::ONE - bary[0] - bary[1];
             let blend = |x: [F32x8; 3]| b0.mul_add(x[0], bary[0].mul_add(x[1], bary[1] * x[2]));

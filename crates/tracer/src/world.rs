@@ -7,11 +7,12 @@
 use crate::light::{Emitter, Lights};
 use crate::material::PreparedMaterial;
 use crate::plan::Plan;
-use crate::scene::{Camera, FilmSettings, Instance, Mesh, Scene, SceneError};
+use crate::scene::{Camera, FilmSettings, Instance, Loading, Mesh, Scene, SceneError, Stage};
 use crate::texture::Texture;
 use glam::{DMat3, DVec3};
-use gonio_accel::{Geometry, Ray8};
+use gonio_accel::{Geometry, GeometryError, Ray8};
 use gonio_kernel::{F32x8, Real, Rgb, Vec3};
+use std::borrow::Cow;
 use std::path::Path;
 
 /// A scene made ready: geometry, shading data, lights, camera and plan.
@@ -20,18 +21,27 @@ pub struct World {
     pub(crate) film: FilmSettings,
     pub(crate) view: View,
     geometry: Geometry,
-    /// Where each instance's triangles start in the three lists below.
-    offsets: Vec<u32>,
+    /// Where each instance's triangles and vertices start in the lists below.
+    offsets: Vec<Offset>,
+    /// Vertices placed so far; may outgrow what 32 bits count, because instances share no memory.
+    vertices: usize,
+    /// In the order (instance, prim).
     pub(crate) triangles: Vec<Triangle>,
-    /// One entry per triangle if the plan has smooth normals, else empty; a zero normal means the geometric one.
-    pub(crate) normals: Vec<[Vec3<f32>; 3]>,
-    /// One entry per triangle if the plan has textures or tangents, else empty.
-    pub(crate) uvs: Vec<[[f32; 2]; 3]>,
+    /// One entry per vertex if the plan has smooth normals, else empty; a zero normal means the geometric one.
+    pub(crate) normals: Vec<Vec3<f32>>,
+    /// One entry per vertex if the plan has textures or tangents, else empty.
+    pub(crate) uvs: Vec<[f32; 2]>,
     pub(crate) materials: Vec<PreparedMaterial>,
     pub(crate) textures: Vec<Texture>,
     pub(crate) lights: Lights,
     plan: Plan,
     warnings: Vec<String>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Offset {
+    triangle: u32,
+    vertex: usize,
 }
 
 /// What shading needs of every triangle.
@@ -61,20 +71,40 @@ impl World {
     /// # Errors
     /// If the scene cannot be cast at: too many triangles, or positions that overflow `f32`.
     pub fn new(scene: &Scene) -> Result<Self, SceneError> {
+        let (meshes, textures) = (Cow::Borrowed(&scene.meshes[..]), scene.textures.clone());
+        Self::place(scene, meshes, textures, &mut |_| ())
+    }
+
+    /// Places the scene and takes its meshes and images out of it, each mesh freed once it is placed: for scenes that fill
+    /// the memory. `progress` is told how many triangles are placed.
+    ///
+    /// # Errors
+    /// If the scene cannot be cast at: too many triangles, or positions that overflow `f32`.
+    pub fn take(scene: &mut Scene, progress: &mut dyn FnMut(Loading)) -> Result<Self, SceneError> {
+        let (meshes, textures) = (std::mem::take(&mut scene.meshes), std::mem::take(&mut scene.textures));
+        Self::place(scene, Cow::Owned(meshes), textures, progress)
+    }
+
+    fn place(
+        scene: &Scene,
+        mut meshes: Cow<'_, [Mesh]>,
+        textures: Vec<Texture>,
+        progress: &mut dyn FnMut(Loading),
+    ) -> Result<Self, SceneError> {
         let refuse = |message: String| SceneError::file(Path::new("scene"), message);
-        let center = center(scene);
+        let center = center(&scene.instances, &meshes);
         let mut warnings = Vec::new();
         let (materials, order) = PreparedMaterial::prepare(scene);
         let mut plan = Plan {
             area_lights: false,
             environment: false,
             textures: materials.iter().any(|m| m.textured),
-            smooth_normals: scene.meshes.iter().any(|m| m.normals.is_some()),
+            smooth_normals: meshes.iter().any(|m| m.normals.is_some()),
             tangents: false,
             one_sided: materials.iter().any(|m| !m.two_sided),
             discrete: materials.iter().any(|m| m.discrete),
         };
-        for mesh in &scene.meshes {
+        for mesh in meshes.iter() {
             let anisotropic = mesh.materials.iter().any(|&m| materials[order[m as usize] as usize].anisotropic);
             plan.tangents |= anisotropic && mesh.uvs.is_some();
             if anisotropic && mesh.uvs.is_none() {
@@ -90,24 +120,36 @@ impl World {
             view: View::new(&scene.camera, &scene.film, center),
             geometry: Geometry::new(Vec::new(), Vec::new()).map_err(|e| refuse(e.to_string()))?,
             offsets: Vec::new(),
+            vertices: 0,
             triangles: Vec::new(),
             normals: Vec::new(),
             uvs: Vec::new(),
             materials,
-            textures: scene.textures.clone(),
+            textures,
             lights: Lights::default(),
             plan,
             warnings,
         };
-        let mut meshes = Vec::new();
-        for instance in &scene.instances {
-            world.offsets.push(world.triangles.len() as u32);
-            meshes.push(world.place(instance, &scene.meshes[instance.mesh], center, &order));
+        let mut uses = vec![0_usize; meshes.len()];
+        scene.instances.iter().for_each(|instance| uses[instance.mesh] += 1);
+        let of = scene.instances.iter().map(|instance| meshes[instance.mesh].triangles.len()).sum::<usize>();
+        if of >= 1 << 31 {
+            return Err(refuse(GeometryError::TooMany(of).to_string()));
         }
-        let instances = (0..meshes.len() as u32)
+        world.triangles.reserve_exact(of);
+        let mut placed = Vec::new();
+        for instance in &scene.instances {
+            placed.push(world.place_one(instance, &meshes[instance.mesh], center, &order));
+            uses[instance.mesh] -= 1;
+            if let (Cow::Owned(meshes), 0) = (&mut meshes, uses[instance.mesh]) {
+                meshes[instance.mesh] = Mesh::default();
+            }
+            progress(Loading { stage: Stage::Placing, done: world.triangles.len() as u64, of: of as u64 });
+        }
+        let instances = (0..placed.len() as u32)
             .map(|mesh| gonio_accel::Instance { mesh, transform: gonio_accel::Instance::IDENTITY })
             .collect();
-        world.geometry = Geometry::new(meshes, instances).map_err(|e| refuse(e.to_string()))?;
+        world.geometry = Geometry::new(placed, instances).map_err(|e| refuse(e.to_string()))?;
 
         let emitters = world.triangles.iter().filter_map(|t| {
             let radiance = world.materials[t.material as usize].emission;
@@ -144,10 +186,17 @@ impl World {
         self.plan
     }
 
-    /// The place of a hit in the lists of triangles.
+    /// The place of a hit in the list of triangles.
     #[inline(always)]
     pub(crate) fn triangle_index(&self, instance: u32, prim: u32) -> usize {
-        (self.offsets[instance as usize] + prim) as usize
+        (self.offsets[instance as usize].triangle + prim) as usize
+    }
+
+    /// The places of a hit's three corners in the lists of vertices.
+    #[inline(always)]
+    pub(crate) fn vertex_indices(&self, instance: u32, prim: u32) -> [usize; 3] {
+        let first = self.offsets[instance as usize].vertex;
+        self.geometry.meshes()[instance as usize].triangles[prim as usize].map(|v| first + v as usize)
     }
 
     /// The largest distance of a corner from the camera's plane; at least 0.
@@ -157,7 +206,9 @@ impl World {
     }
 
     /// Appends an instance's triangles and returns them as a mesh for casting.
-    fn place(&mut self, instance: &Instance, mesh: &Mesh, center: DVec3, order: &[u32]) -> gonio_accel::Mesh {
+    fn place_one(&mut self, instance: &Instance, mesh: &Mesh, center: DVec3, order: &[u32]) -> gonio_accel::Mesh {
+        self.offsets.push(Offset { triangle: self.triangles.len() as u32, vertex: self.vertices });
+        self.vertices += mesh.positions.len();
         let to_world = instance.transform;
         let positions: Vec<[f32; 3]> = mesh
             .positions
@@ -175,14 +226,15 @@ impl World {
             corners,
             material: order[m as usize],
         }));
+        let count = mesh.positions.len();
         if self.plan.smooth_normals {
+            let turned = mesh.normals.iter().flatten().map(|&n| turn(normal_matrix, n));
             let none = Vec3::new(0.0, 0.0, 0.0);
-            let turned: Vec<Vec3<f32>> = mesh.normals.iter().flatten().map(|&n| turn(normal_matrix, n)).collect();
-            self.normals.extend(triangles.iter().map(|t| t.map(|v| turned.get(v as usize).copied().unwrap_or(none))));
+            self.normals.extend(turned.chain(std::iter::repeat(none)).take(count));
         }
         if self.plan.textures || self.plan.tangents {
-            let uv = |v: u32| mesh.uvs.as_ref().map_or([0.0; 2], |uvs| uvs[v as usize]);
-            self.uvs.extend(triangles.iter().map(|t| t.map(uv)));
+            let uvs = mesh.uvs.iter().flatten().copied();
+            self.uvs.extend(uvs.chain(std::iter::repeat([0.0; 2])).take(count));
         }
         gonio_accel::Mesh { positions, triangles }
     }
@@ -198,11 +250,10 @@ fn unit_normal([a, b, c]: &[Vec3<f32>; 3]) -> Vec3<f32> {
 }
 
 /// The middle of everything that is placed.
-fn center(scene: &Scene) -> DVec3 {
-    let placed = scene
-        .instances
+fn center(instances: &[Instance], meshes: &[Mesh]) -> DVec3 {
+    let placed = instances
         .iter()
-        .flat_map(|i| scene.meshes[i.mesh].positions.iter().map(move |&p| i.transform.transform_point3(p.into())));
+        .flat_map(|i| meshes[i.mesh].positions.iter().map(move |&p| i.transform.transform_point3(p.into())));
     let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for p in placed {
         lo = lo.min(p);

@@ -86,7 +86,9 @@ impl Tree {
         let boxes: Vec<Aabb> = roots.iter().map(|root| root.0).collect();
         match (binary(&boxes), &roots[..]) {
             (None, _) => tree.nodes.push(Node::empty()),
-            (Some((bounds, _)), [root]) => (tree.root, tree.lo, tree.hi) = (root.1, vector(bounds.min), vector(bounds.max)),
+            (Some((bounds, _)), [root]) => {
+                (tree.root, tree.lo, tree.hi) = (root.1, vector(bounds.min), vector(bounds.max))
+            }
             (Some((bounds, binary)), _) => {
                 let below = std::mem::replace(&mut tree.depth, 1);
                 let part = |_: &mut Self, node| roots[primitives(&binary, node)[0] as usize].1;

@@ -1,6 +1,7 @@
 //! Meshes, materials and images put together: every name becomes an index.
 
 use std::collections::HashMap;
+use std::mem::take;
 use std::path::{Path, PathBuf};
 
 use glam::{DAffine3, DVec3};
@@ -10,8 +11,8 @@ use super::mtl::Library;
 use super::obj::{self, ObjFile};
 use super::textures::Textures;
 use super::{
-    Camera, Color, Environment, FilmSettings, Instance, IntegratorSettings, LobeSpec, Material, Mesh, Model, Scene,
-    SceneError, paths,
+    Camera, Color, Environment, FilmSettings, Instance, IntegratorSettings, Loading, LobeSpec, Material, Mesh, Model,
+    Scene, SceneError, Stage, paths,
 };
 
 /// Largest number of materials: an index fits sixteen bits.
@@ -52,6 +53,8 @@ pub(super) struct Builder {
 /// An OBJ file that was read, and what was made of it.
 struct Object {
     file: ObjFile,
+    /// The meshes that took the geometry of the file's parts; others copy theirs.
+    first: Vec<usize>,
     /// Indices into [`Builder::libraries`]; `None` until a material is looked for.
     libraries: Option<Vec<usize>>,
     /// For each assignment of materials, the meshes that were made.
@@ -115,13 +118,14 @@ impl Builder {
         assignment: &Assignment,
         transform: DAffine3,
         blame: impl Fn(String) -> SceneError,
+        progress: &mut dyn FnMut(Loading),
     ) -> Result<Vec<String>, SceneError> {
         let mut object = match self.objects.remove(path) {
             Some(object) => object,
             None => {
-                let file = obj::load(path)?;
+                let file = obj::load(path, &mut |done, of| progress(Loading { stage: Stage::Reading, done, of }))?;
                 file.warnings.iter().for_each(|text| self.warn(text.clone()));
-                Object { file, libraries: None, meshes: HashMap::new() }
+                Object { file, first: Vec::new(), libraries: None, meshes: HashMap::new() }
             }
         };
         let slots = self.resolve(path, &mut object, assignment).map_err(|error| match error {
@@ -129,18 +133,11 @@ impl Builder {
             Refused::Count(why) => blame(why),
         })?;
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let meshes = object.meshes.entry(slots).or_insert_with_key(|slots| {
-            let first = self.meshes.len();
-            self.meshes.extend(object.file.parts.iter().map(|part| Mesh {
-                name: name.clone(),
-                positions: part.positions.clone(),
-                normals: part.normals.clone(),
-                uvs: part.uvs.clone(),
-                triangles: part.triangles.clone(),
-                materials: part.materials.iter().map(|&slot| slots[slot as usize]).collect(),
-            }));
-            (first..self.meshes.len()).collect()
-        });
+        if !object.meshes.contains_key(&slots) {
+            let made = self.make_meshes(&name, &mut object, &slots);
+            object.meshes.insert(slots.clone(), made);
+        }
+        let meshes = &object.meshes[&slots];
         for &mesh in meshes.iter() {
             for &position in &self.meshes[mesh].positions {
                 let world = transform.transform_point3(DVec3::from_array(position));
@@ -157,10 +154,38 @@ impl Builder {
         Ok(names)
     }
 
+    /// Meshes of an OBJ file with these materials.
+    fn make_meshes(&mut self, name: &str, object: &mut Object, slots: &[u32]) -> Vec<usize> {
+        let first = self.meshes.len();
+        for (at, part) in object.file.parts.iter_mut().enumerate() {
+            let runs = part.materials.iter();
+            let materials = runs.flat_map(|&(count, slot)| std::iter::repeat_n(slots[slot as usize], count as usize));
+            let mut mesh = match object.first.get(at) {
+                Some(&like) => Mesh { materials: Vec::new(), ..self.meshes[like].clone() },
+                None => Mesh {
+                    name: name.to_owned(),
+                    positions: take(&mut part.positions),
+                    normals: take(&mut part.normals),
+                    uvs: take(&mut part.uvs),
+                    triangles: take(&mut part.triangles),
+                    materials: Vec::new(),
+                },
+            };
+            mesh.materials.reserve_exact(mesh.triangles.len());
+            mesh.materials.extend(materials);
+            self.meshes.push(mesh);
+        }
+        let made: Vec<usize> = (first..self.meshes.len()).collect();
+        if object.first.is_empty() {
+            object.first.clone_from(&made);
+        }
+        made
+    }
+
     /// The material of each slot of an OBJ file; unused slots are 0.
     fn resolve(&mut self, path: &Path, object: &mut Object, wanted: &Assignment) -> Result<Vec<u32>, Refused> {
         let mut used = vec![false; object.file.materials.len() + 1];
-        for &slot in object.file.parts.iter().flat_map(|part| &part.materials) {
+        for &(_, slot) in object.file.parts.iter().flat_map(|part| &part.materials) {
             used[slot as usize] = true;
         }
         let mut slots = vec![0; used.len()];

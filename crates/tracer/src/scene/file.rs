@@ -6,7 +6,7 @@ use super::build::{Assignment, Builder};
 use super::camera::CameraSpec;
 use super::document::{Document, Table, Value};
 use super::error::quoted;
-use super::{FilmSettings, IntegratorSettings, Scene, SceneError, environment, material, paths, transform};
+use super::{FilmSettings, IntegratorSettings, Loading, Scene, SceneError, environment, material, paths, transform};
 
 impl Default for FilmSettings {
     fn default() -> Self {
@@ -21,7 +21,7 @@ impl Default for IntegratorSettings {
 }
 
 /// Reads a scene file and everything it names.
-pub(super) fn read(text: &str, path: &Path) -> Result<Scene, SceneError> {
+pub(super) fn read(text: &str, path: &Path, progress: &mut dyn FnMut(Loading)) -> Result<Scene, SceneError> {
     let document = Document { path, text };
     let parsed = document.parse()?;
     let root = Table::new(document, "the scene", 0, parsed.get_ref());
@@ -50,7 +50,7 @@ pub(super) fn read(text: &str, path: &Path) -> Result<Scene, SceneError> {
         return Err(document.error(0, "the scene has no [[meshes]]: there is nothing to render"));
     }
     for value in &meshes {
-        mesh(value, &mut builder)?;
+        mesh(value, &mut builder, progress)?;
     }
     let (width, height) = (f64::from(film.width), f64::from(film.height));
     let camera = camera
@@ -103,7 +103,7 @@ fn integrator(table: Option<Table<'_>>) -> Result<IntegratorSettings, SceneError
     Ok(settings)
 }
 
-fn mesh(value: &Value<'_>, builder: &mut Builder) -> Result<(), SceneError> {
+fn mesh(value: &Value<'_>, builder: &mut Builder, progress: &mut dyn FnMut(Loading)) -> Result<(), SceneError> {
     let table = value.table("[[meshes]]")?;
     let file = table.get("file").ok_or_else(|| table.error("[[meshes]] needs \"file\""))?;
     let (all, renamed, steps) = (table.get("material"), table.get("materials"), table.get("transform"));
@@ -130,7 +130,7 @@ fn mesh(value: &Value<'_>, builder: &mut Builder) -> Result<(), SceneError> {
     }
     let path = paths::find(file.document().path, name)
         .ok_or_else(|| file.error(format!("the file \"{name}\" does not exist")))?;
-    let used = builder.place(&path, &assignment, transform, |why| file.error(why))?;
+    let used = builder.place(&path, &assignment, transform, |why| file.error(why), progress)?;
     match renames.iter().find(|(obj_name, ..)| !used.iter().any(|name| name == obj_name)) {
         None => Ok(()),
         Some((obj_name, _, value)) => {

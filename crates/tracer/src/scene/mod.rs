@@ -40,10 +40,18 @@ impl Scene {
     /// # Errors
     /// Anything that cannot be rendered as written, with file and line.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
+        Self::load_with(path, &mut |_| ())
+    }
+
+    /// Like [`Scene::load`]; `progress` is told how much of each OBJ file is read.
+    ///
+    /// # Errors
+    /// Anything that cannot be rendered as written, with file and line.
+    pub fn load_with(path: &Path, progress: &mut dyn FnMut(Loading)) -> Result<Self, SceneError> {
         let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
         match extension.to_ascii_lowercase().as_str() {
-            "toml" => Self::from_toml_str(&paths::read_text(path)?, path),
-            "obj" => Self::from_obj(path),
+            "toml" => file::read(&paths::read_text(path)?, path, progress),
+            "obj" => Self::from_obj(path, progress),
             _ => Err(SceneError::file(path, "is neither a scene file (.toml) nor an OBJ file (.obj)")),
         }
     }
@@ -53,18 +61,40 @@ impl Scene {
     /// # Errors
     /// Anything that cannot be rendered as written, with file and line.
     pub fn from_toml_str(text: &str, path: &Path) -> Result<Self, SceneError> {
-        file::read(text, path)
+        file::read(text, path, &mut |_| ())
     }
 
-    fn from_obj(path: &Path) -> Result<Self, SceneError> {
+    fn from_obj(path: &Path, progress: &mut dyn FnMut(Loading)) -> Result<Self, SceneError> {
         let mut builder = build::Builder::default();
         let blame = |why: String| SceneError::at(path, 1, why);
-        builder.place(path, &build::Assignment::default(), DAffine3::IDENTITY, blame)?;
+        builder.place(path, &build::Assignment::default(), DAffine3::IDENTITY, blame, progress)?;
         let film = FilmSettings::default();
         let aspect = f64::from(film.width) / f64::from(film.height);
         let camera = camera::CameraSpec::default().complete(builder.bounds, aspect).map_err(blame)?;
         Ok(builder.finish(film, camera, IntegratorSettings::default(), Environment::constant(Rgb::splat(1.0))))
     }
+}
+
+/// How far a scene has come on its way to being rendered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Loading {
+    /// What is being done.
+    pub stage: Stage,
+    /// How much of it is done, in the stage's unit.
+    pub done: u64,
+    /// How much there is to do; at least `done`.
+    pub of: u64,
+}
+
+/// What is done between the scene file and the first ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// [`Scene::load_with`] reads an OBJ file; bytes. A scene of several files begins again for each.
+    Reading,
+    /// [`World::take`](crate::World::take) places the meshes; triangles.
+    Placing,
+    /// [`Backend::build_with`](crate::Backend::build_with) builds what rays are cast at; triangles.
+    Building,
 }
 
 /// A scene, checked and ready to be planned and rendered.
@@ -208,7 +238,7 @@ pub enum Color {
 ///
 /// `positions`, `normals` and `uvs` have one entry per vertex; `triangles` index them, counter-clockwise seen from the
 /// front. Positions are f64 because georeferenced data needs it: the renderer moves the origin before it rounds to f32.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// The file's name, for messages.
     pub name: String,

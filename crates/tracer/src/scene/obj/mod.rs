@@ -1,17 +1,26 @@
 //! OBJ files: geometry with material names, every polygon a set of triangles.
 //!
-//! `tobj` reads the text that [`clean`] prepared; [`polygon`] makes the triangles, because `tobj`'s own fan is wrong on
-//! concave outlines. One file yields up to four parts: with and without texture coordinates, with and without normals.
+//! [`lines`] hands out the statements of a file of any size, [`statements`] says what they mean, [`part`] makes vertices
+//! of the corners of faces, and [`polygon`] makes triangles of them. One file yields up to four parts: with and without
+//! texture coordinates, with and without normals.
+//!
+//! The crate `tobj` read these files before, from a copy of the text in which every line had been checked, because
+//! it gives no line numbers and misreads some inputs without a word. For ten million triangles it took more memory (4.3 GB)
+//! and time than everything else together. The check already knew every number.
 
-use std::collections::HashMap;
+use std::fs::File;
 use std::path::Path;
 
-use glam::DVec3;
+use super::SceneError;
 
-use super::{SceneError, paths};
-
-mod clean;
+mod lines;
+mod part;
 mod polygon;
+mod statements;
+
+use lines::{Lines, Survey};
+pub(super) use part::Part;
+use statements::Reader;
 
 /// What an OBJ file holds.
 pub(super) struct ObjFile {
@@ -23,62 +32,52 @@ pub(super) struct ObjFile {
     pub(super) warnings: Vec<String>,
 }
 
-/// Triangles of one format.
-#[derive(Default)]
-pub(super) struct Part {
-    pub(super) positions: Vec<[f64; 3]>,
-    pub(super) normals: Option<Vec<[f32; 3]>>,
-    pub(super) uvs: Option<Vec<[f32; 2]>>,
-    pub(super) triangles: Vec<[u32; 3]>,
-    /// 0 where no material is named, otherwise an index into [`ObjFile::materials`] plus 1.
-    pub(super) materials: Vec<u32>,
-}
-
-/// Reads an OBJ file without its materials.
+/// Reads an OBJ file without its materials; `progress` is told how many bytes are done, and of how many.
 ///
 /// # Errors
 /// The file cannot be read, a line means nothing, or no triangle with an area is left.
-pub(super) fn load(path: &Path) -> Result<ObjFile, SceneError> {
-    let clean = clean::clean(path, &paths::read_text(path)?)?;
-    let models = read_with_tobj(path, &clean)?;
-    let mut parts: [Part; 4] = std::array::from_fn(|_| Part::default());
-    let mut faces = Faces { lines: clean.face_lines.iter().copied(), flat: None, crossed: None, corners: Vec::new() };
-    for model in &models {
-        let mesh = &model.mesh;
-        let (with_uv, with_normal) = (!mesh.texcoords.is_empty(), !mesh.normals.is_empty());
-        let part = &mut parts[usize::from(with_uv) + 2 * usize::from(with_normal)];
-        part.append(mesh, &mut faces).ok_or_else(|| SceneError::file(path, "has more than 2³² vertices"))?;
-    }
+pub(super) fn load(path: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<ObjFile, SceneError> {
+    let unreadable = |error: std::io::Error| SceneError::file(path, format!("cannot be read: {error}"));
+    let file = File::open(path).map_err(unreadable)?;
+    let size = file.metadata().map_err(unreadable)?.len();
+    progress(0, size);
+    let survey = Survey::of(path, &file)?;
+    let mut lines = Lines::new(path, &file, &survey)?;
+    let mut reader = Reader::new(path, &survey);
+    reader.read(&mut lines, &mut |bytes| progress(bytes, size))?;
+    progress(size, size);
+
     let mut warnings = Vec::new();
-    for (why, &(line, count, _)) in &clean.dropped {
+    for (why, &(line, count, _)) in &reader.dropped {
         warnings.push(warning(path, line, format!("{why}: {}", ignored(count))));
     }
-    if let Some((line, count)) = faces.flat {
+    let (flat, crossed) = (reader.faults.flat, reader.faults.crossed);
+    if let Some((line, count)) = flat {
         warnings.push(warning(path, line, format!("triangles without area: {count} dropped, the first on this line")));
     }
-    if let Some((line, count)) = faces.crossed {
+    if let Some((line, count)) = crossed {
         warnings.push(warning(path, line, format!("faces that cross themselves: {count}, the first on this line")));
     }
+    let nothing = match (flat, reader.dropped.first_key_value()) {
+        (Some((line, count)), _) => (line, format!("every triangle has zero area ({count}); nothing is left to draw")),
+        (None, Some((why, &(line, ..)))) => (line, format!("the file has no triangles; {why}")),
+        (None, None) => (lines.number.max(1), "the file ends here and has no faces".to_owned()),
+    };
+    let (materials, libraries) = (std::mem::take(&mut reader.materials), std::mem::take(&mut reader.libraries));
     let mut missing_normals = 0;
-    let mut kept = Vec::new();
-    for mut part in parts.into_iter().filter(|part| !part.triangles.is_empty()) {
-        missing_normals += part.complete_normals();
-        kept.push(part);
+    let mut parts = Vec::new();
+    for mut part in reader.into_parts().into_iter().filter(|part| !part.triangles.is_empty()) {
+        missing_normals += part.finish();
+        parts.push(part);
     }
     if missing_normals > 0 {
         let text = format!("normals without length: {missing_normals} replaced by the normal of the face");
         warnings.push(format!("{}: {text}", path.display()));
     }
-    if kept.is_empty() {
-        return Err(match (faces.flat, clean.dropped.first_key_value()) {
-            (Some((line, count)), _) => {
-                SceneError::at(path, line, format!("every triangle has zero area ({count}); nothing is left to draw"))
-            }
-            (None, Some((why, &(line, ..)))) => SceneError::at(path, line, format!("the file has no triangles; {why}")),
-            (None, None) => SceneError::at(path, clean.lines.max(1), "the file ends here and has no faces"),
-        });
+    if parts.is_empty() {
+        return Err(SceneError::at(path, nothing.0, nothing.1));
     }
-    Ok(ObjFile { parts: kept, materials: clean.materials, libraries: clean.libraries, warnings })
+    Ok(ObjFile { parts, materials, libraries, warnings })
 }
 
 fn warning(path: &Path, line: u32, message: String) -> String {
@@ -87,108 +86,4 @@ fn warning(path: &Path, line: u32, message: String) -> String {
 
 fn ignored(count: u32) -> String {
     if count == 1 { "ignored".to_owned() } else { format!("{count} lines ignored, the first is this") }
-}
-
-fn read_with_tobj(path: &Path, clean: &clean::Clean) -> Result<Vec<tobj::Model>, SceneError> {
-    // `usemtl` holds an index instead of a name; this library defines them all, so a model's material id is the index.
-    let text = format!("mtllib names\n{}", clean.text);
-    let names = |_: &Path| {
-        let named = |i: usize| tobj::Material { name: i.to_string(), ..tobj::Material::default() };
-        let materials: Vec<tobj::Material> = (0..clean.materials.len()).map(named).collect();
-        let index: HashMap<String, usize> = (0..clean.materials.len()).map(|i| (i.to_string(), i)).collect();
-        Ok((materials, index))
-    };
-    let options = tobj::LoadOptions { single_index: true, ..tobj::LoadOptions::default() };
-    tobj::load_obj_buf(&mut text.as_bytes(), &options, names).map(|(models, _)| models).map_err(|error| {
-        match clean.forward {
-            Some(line) => SceneError::at(path, line, "a face uses a vertex that is only defined further down"),
-            None => SceneError::file(path, format!("cannot be read: {error}")),
-        }
-    })
-}
-
-/// Where we are among the file's faces, and what was wrong with them: first line and count.
-struct Faces<L> {
-    lines: L,
-    flat: Option<(u32, u32)>,
-    crossed: Option<(u32, u32)>,
-    corners: Vec<[usize; 3]>,
-}
-
-fn count(tally: &mut Option<(u32, u32)>, line: u32) {
-    tally.get_or_insert((line, 0)).1 += 1;
-}
-
-impl Part {
-    /// Adds the triangles of one `tobj` model; `None` if vertices outgrow their index.
-    fn append(&mut self, mesh: &tobj::Mesh, faces: &mut Faces<impl Iterator<Item = u32>>) -> Option<()> {
-        let base = u32::try_from(self.positions.len()).ok()?;
-        self.positions.extend(mesh.positions.as_chunks().0);
-        u32::try_from(self.positions.len()).ok()?;
-        if !mesh.texcoords.is_empty() {
-            let uvs = mesh.texcoords.as_chunks().0.iter().map(|uv: &[f64; 2]| uv.map(|x| x as f32));
-            self.uvs.get_or_insert_default().extend(uvs);
-        }
-        if !mesh.normals.is_empty() {
-            let normals = mesh.normals.as_chunks().0.iter().map(|&normal| unit(DVec3::from_array(normal)));
-            self.normals.get_or_insert_default().extend(normals);
-        }
-        let material = mesh.material_id.map_or(0, |id| id as u32 + 1);
-        let mut arities = mesh.face_arities.iter().map(|&arity| arity as usize);
-        let mut rest = &mesh.indices[..];
-        let mut points = Vec::new();
-        while !rest.is_empty() {
-            let arity = if mesh.face_arities.is_empty() { 3 } else { arities.next()? };
-            let (face, after) = rest.split_at_checked(arity)?;
-            rest = after;
-            let line = faces.lines.next().unwrap_or(0);
-            points.clear();
-            points.extend(face.iter().map(|&i| DVec3::from_array(self.positions[(base + i) as usize])));
-            faces.corners.clear();
-            if !polygon::triangulate(&points, &mut faces.corners) {
-                count(&mut faces.crossed, line);
-            }
-            if faces.corners.is_empty() {
-                count(&mut faces.flat, line);
-            }
-            for corners in &faces.corners {
-                if has_area(corners.map(|corner| points[corner])) {
-                    self.triangles.push(corners.map(|corner| base + face[corner]));
-                    self.materials.push(material);
-                } else {
-                    count(&mut faces.flat, line);
-                }
-            }
-        }
-        Some(())
-    }
-
-    /// Gives each vertex whose normal had no length the normal of a face; returns how many.
-    fn complete_normals(&mut self) -> usize {
-        let Some(normals) = &mut self.normals else { return 0 };
-        let mut replaced = 0;
-        for triangle in &self.triangles {
-            for &vertex in triangle {
-                if normals[vertex as usize] == [0.0; 3] {
-                    let [a, b, c] = triangle.map(|i| DVec3::from_array(self.positions[i as usize]));
-                    normals[vertex as usize] = unit((b - a).cross(c - a));
-                    replaced += 1;
-                }
-            }
-        }
-        replaced
-    }
-}
-
-/// The unit vector in f32; zero for zero. Scaled first, so that squares neither overflow nor vanish.
-fn unit(v: DVec3) -> [f32; 3] {
-    let largest = v.abs().max_element();
-    if largest > 0.0 { (v / largest).normalize().as_vec3().to_array() } else { [0.0; 3] }
-}
-
-/// Whether the corners span more than the rounding of their coordinates.
-fn has_area([a, b, c]: [DVec3; 3]) -> bool {
-    let largest = a.abs().max(b.abs()).max(c.abs()).max_element();
-    let edge = (b - a).length().max((c - a).length()).max((c - b).length());
-    (b - a).cross(c - a).length() > 4.0 * f64::EPSILON * largest * edge
 }
