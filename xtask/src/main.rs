@@ -7,6 +7,7 @@ mod cargo;
 mod ci;
 mod elf;
 mod embree;
+mod fuzz;
 mod no_std;
 mod peers;
 mod sources;
@@ -23,6 +24,8 @@ cargo xtask no-std               prove that the kernel needs no std, no allocato
 cargo xtask peers [--rounds N] [--spp N] [--python PATH]
                                  the Cornell box against Mitsuba 3, in turns; Python with mitsuba is `python3`
 cargo xtask ratio                how much faster eight lanes are than one direction at a time
+cargo xtask fuzz [--executions N] [--target NAME]
+                                 N inputs for each parser, 1,000,000 unless told; what broke one stays in target/fuzz
 cargo xtask ci                   all that CI runs: .ci/run
 ";
 
@@ -38,6 +41,7 @@ fn main() -> ExitCode {
         ("no-std", []) => no_std::run(),
         ("peers", rest) => peers::run(rest),
         ("ratio", []) => cargo::run(cargo::cargo().args(["bench", "--bench", "kernel", "--", "--ratio"])),
+        ("fuzz", rest) => fuzz::run(rest),
         ("ci", []) => ci::run(),
         ("help" | "-h" | "--help", []) => {
             print!("{USAGE}");

@@ -25,7 +25,9 @@ mod validate;
 
 pub use cpu::processor_suffices;
 
+use anyhow::Result;
 use clap::{Parser, Subcommand};
+use std::ffi::OsString;
 use std::io;
 use std::process::ExitCode;
 
@@ -49,6 +51,27 @@ enum Command {
     Validate(validate::Args),
 }
 
+impl Command {
+    fn run(&self) -> Result<ExitCode> {
+        match self {
+            Self::Render(args) => render::run(args),
+            Self::Bsdf(args) => bsdf::run(args),
+            Self::Accel(args) => accel::run(args),
+            Self::Compare(args) => compare::run(args),
+            Self::Validate(args) => validate::run(args),
+        }
+    }
+}
+
+/// Does what a command line says, the program's name first, without a process of its own: signals are not listened to, and
+/// an error is returned instead of printed. Fuzzing goes this way.
+///
+/// # Errors
+/// Wrong usage, or what the subcommand says.
+pub fn execute<T: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = T>) -> Result<ExitCode> {
+    Cli::try_parse_from(arguments)?.command.run()
+}
+
 /// Runs the command line of this process.
 #[inline(never)] // its instructions must not move before the check of the processor
 pub fn run() -> ExitCode {
@@ -63,14 +86,7 @@ pub fn run() -> ExitCode {
     if let Err(error) = signals::listen() {
         usage::warn(&format!("signals are left to the system: {error}"));
     }
-    let result = match cli.command {
-        Command::Render(args) => render::run(&args),
-        Command::Bsdf(args) => bsdf::run(&args),
-        Command::Accel(args) => accel::run(&args),
-        Command::Compare(args) => compare::run(&args),
-        Command::Validate(args) => validate::run(&args),
-    };
-    result.unwrap_or_else(|error| {
+    cli.command.run().unwrap_or_else(|error| {
         if is_closed_pipe(&error) {
             return ExitCode::SUCCESS; // the reader has seen enough, as in `gonio bsdf sample … | head`
         }

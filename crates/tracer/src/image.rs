@@ -7,6 +7,7 @@
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
+use ::exr::meta::MetaData;
 use ::exr::meta::attribute::{Chromaticities, IntegerBounds};
 use ::exr::prelude::{self as exr, ReadChannels, ReadLayers, WritableImage};
 
@@ -276,11 +277,22 @@ pub fn read_picture(path: &Path) -> Result<Picture, ImageError> {
     Ok(Picture { width, height, rgb })
 }
 
+/// Most pixels of a picture that is read, 16384 × 8192 or alike: 1.5 GiB as three f32. A header of a few bytes can claim
+/// any size.
+const MOST_PIXELS: usize = 1 << 27;
+
 /// Reads the first layer that has channels R, G and B, as f32.
 ///
 /// # Errors
-/// The file cannot be read, or no layer has these channels.
+/// The file cannot be read, no layer has these channels, or a layer has more than 2²⁷ pixels.
 pub fn read_exr(path: &Path) -> Result<Picture, ImageError> {
+    let meta =
+        MetaData::read_from_file(path, false).map_err(|error| failure(path, format!("cannot be read: {error}")))?;
+    for exr::Vec2(width, height) in meta.headers.iter().map(|header| header.layer_size) {
+        if width.checked_mul(height).is_none_or(|pixels| pixels > MOST_PIXELS) {
+            return Err(failure(path, format!("is too large: {width} x {height} pixels")));
+        }
+    }
     let image = exr::read()
         .no_deep_data()
         .largest_resolution_level()
