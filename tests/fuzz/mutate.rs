@@ -167,7 +167,7 @@ fn change(data: &mut Vec<u8>, seeds: &[Vec<u8>], random: &mut Random) {
         1 if at < data.len() => data[at] = random.pick(256) as u8,
         2 => data.truncate(at),
         3 => drop(data.drain(at..to)),
-        4 => insert(data, at, &data[at..to].to_vec().repeat(1 + random.pick(20))),
+        4 => insert(data, at, &repeated(&data[at..to], 1 << random.pick(13))),
         5 => insert(data, at, &[b'-', b'/', b'"', b'\\', 0, 0xff, 0xe9, b'\n'][random.pick(8)..][..1]),
         6 => {
             let other = &seeds[random.pick(seeds.len())];
@@ -191,6 +191,11 @@ fn change(data: &mut Vec<u8>, seeds: &[Vec<u8>], random: &mut Random) {
         }
         _ => replace_word(data, at, NUMBERS[random.pick(NUMBERS.len())].as_bytes()),
     }
+}
+
+/// Long lines and deep nesting: so many times, as far as an input may grow.
+fn repeated(part: &[u8], times: usize) -> Vec<u8> {
+    part.repeat(times.min(LONGEST / part.len().max(1)))
 }
 
 fn insert(data: &mut Vec<u8>, at: usize, what: &[u8]) {
