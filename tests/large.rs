@@ -85,7 +85,11 @@ fn files_that_are_only_large_are_refused_in_little_memory() {
         "continued.obj:1: the line is longer than 16777216 bytes: this is not an OBJ file",
     );
     refused("points.obj", b"v 0 0 0\n", "points.obj:5242880: the file ends here and has no faces");
-    refused("binary.obj", b"v\0\n", "binary.obj:1: here is a zero byte: an OBJ file is plain text, one byte per letter");
+    refused(
+        "binary.obj",
+        b"v\0\n",
+        "binary.obj:1: here is a zero byte: an OBJ file is plain text, one byte per letter",
+    );
     refused("far.obj", b"f 1 2 3\n", "far.obj:1: vertex index 1 in a face is out of range: the file defines 0");
 }
 

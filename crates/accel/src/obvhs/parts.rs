@@ -18,52 +18,88 @@ const BINS: usize = 16;
 pub(super) fn split(geometry: &Geometry, most: usize) -> (Vec<u32>, Vec<usize>) {
     let mut order: Vec<u32> = (0..geometry.triangle_count() as u32).collect();
     let mut ends = Vec::new();
-    let mut work = vec![0..order.len()];
-    while let Some(range) = work.pop() {
+    let center = |&triangle: &u32| Aabb::from_point(bounds_of(geometry, triangle).center());
+    let whole = if order.len() > most {
+        order.iter().map(center).fold(Aabb::empty(), |a, b| a.union(&b))
+    } else {
+        Aabb::empty()
+    };
+    let mut work = vec![(0..order.len(), whole)];
+    while let Some((range, centers)) = work.pop() {
         if range.len() <= most {
             ends.push(range.end);
             continue;
         }
-        let middle = range.start + cut(geometry, &mut order[range.clone()]);
-        work.push(middle..range.end);
-        work.push(range.start..middle);
+        let (before, [first, second]) = cut(geometry, &mut order[range.clone()], &centers);
+        let middle = range.start + before;
+        work.push((middle..range.end, second));
+        work.push((range.start..middle, first));
     }
     (order, ends)
 }
 
-/// Brings one side before the other and returns how many it has; neither is empty.
-fn cut(geometry: &Geometry, part: &mut [u32]) -> usize {
-    let mut centers = Aabb::empty();
-    for &triangle in part.iter() {
-        centers.extend(bounds_of(geometry, triangle).center());
+#[derive(Clone, Copy)]
+struct Bin {
+    bounds: Aabb,
+    centers: Aabb,
+    count: usize,
+}
+
+impl Bin {
+    fn empty() -> Self {
+        Self { bounds: Aabb::empty(), centers: Aabb::empty(), count: 0 }
     }
+
+    fn add(&mut self, other: &Self) {
+        self.bounds = self.bounds.union(&other.bounds);
+        self.centers = self.centers.union(&other.centers);
+        self.count += other.count;
+    }
+
+    fn sum(bins: &[Self]) -> Self {
+        bins.iter().fold(Self::empty(), |mut sum, bin| {
+            sum.add(bin);
+            sum
+        })
+    }
+}
+
+/// Brings one side of a part before the other, given the bounds of its centres; returns how many are before, and the
+/// bounds of both sides' centres. Neither side is empty.
+fn cut(geometry: &Geometry, part: &mut [u32], centers: &Aabb) -> (usize, [Aabb; 2]) {
     let size = centers.diagonal();
     let axis = if size.x >= size.y && size.x >= size.z { 0 } else { 1 + usize::from(size.z > size.y) };
     let scale = BINS as f32 / size[axis];
-    let bin = |center: f32| (((center - centers.min[axis]) * scale) as usize).min(BINS - 1); // `as` saturates
-
-    let mut bins = [(Aabb::empty(), 0_usize); BINS];
-    for &triangle in part.iter() {
-        let bounds = bounds_of(geometry, triangle);
-        let (sum, count) = &mut bins[bin(bounds.center()[axis])];
-        *sum = sum.union(&bounds);
-        *count += 1;
-    }
-    let cost = |side: &[(Aabb, usize)]| {
-        let whole = side.iter().filter(|bin| bin.1 > 0).fold(Aabb::empty(), |sum, bin| sum.union(&bin.0));
-        let count: usize = side.iter().map(|bin| bin.1).sum();
-        (count > 0).then(|| whole.half_area() * count as f32)
+    let mut bins = [Bin::empty(); BINS];
+    let places: Vec<u8> = part
+        .iter()
+        .map(|&triangle| {
+            let bounds = bounds_of(geometry, triangle);
+            let center = bounds.center();
+            let place = (((center[axis] - centers.min[axis]) * scale) as usize).min(BINS - 1); // `as` saturates
+            bins[place].add(&Bin { bounds, centers: Aabb::from_point(center), count: 1 });
+            place as u8
+        })
+        .collect();
+    let cost = |side: &[Bin]| {
+        let sum = Bin::sum(side);
+        (sum.count > 0).then(|| sum.bounds.half_area() * sum.count as f32)
     };
     let costs = (1..BINS).filter_map(|at| Some((cost(&bins[..at])? + cost(&bins[at..])?, at)));
     let Some((_, best)) = costs.min_by(|a, b| a.0.total_cmp(&b.0)) else {
-        return part.len() / 2; // all centres in one place: any half will do
+        return (part.len() / 2, [*centers; 2]); // all centres in one place: any half will do
     };
+    // Stable, so that neighbours in the file stay neighbours in memory.
     let mut before = 0;
+    let mut after = Vec::new();
     for at in 0..part.len() {
-        if bin(bounds_of(geometry, part[at]).center()[axis]) < best {
-            part.swap(before, at);
+        if usize::from(places[at]) < best {
+            part[before] = part[at];
             before += 1;
+        } else {
+            after.push(part[at]);
         }
     }
-    before
+    part[before..].copy_from_slice(&after);
+    (before, [&bins[..best], &bins[best..]].map(|side| Bin::sum(side).centers))
 }
