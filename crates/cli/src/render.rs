@@ -81,12 +81,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     check_outputs(args)?;
     let start = Instant::now();
-    let mut scene = Scene::load(&args.scene)?;
+    let mut report = progress::Report::new(args.progress);
+    let mut scene = Scene::load_with(&args.scene, &mut |loading| report.loading(&loading))?;
     if let Some([width, height]) = args.size {
         (scene.film.width, scene.film.height) = (width, height);
     }
     check_crop(args, &scene)?;
-    let world = World::new(&scene)?;
+    let world = World::take(&mut scene, &mut |loading| report.loading(&loading))?;
+    report.finish();
     let load_seconds = start.elapsed().as_secs_f64();
     let mut warnings: Vec<&str> = Vec::new();
     for warning in scene.warnings.iter().chain(world.warnings()) {
@@ -97,7 +99,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
 
     let start = Instant::now();
-    let accel = args.backend.build(world.geometry(), intersect(args))?;
+    let mut tell = |loading| report.loading(&loading);
+    let accel = args.backend.build_with(world.geometry(), intersect(args), &mut tell)?;
     let build_seconds = start.elapsed().as_secs_f64();
 
     let settings = settings(args, &scene, &world);
@@ -110,7 +113,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         intersect: intersect(args),
         times,
     };
-    let mut report = progress::Report::new(args.progress);
     signals::work_in_passes();
     let rendering = gonio_tracer::render(&world, &*accel, &settings, &mut |pass| {
         report.pass(&pass.progress);

@@ -1,10 +1,15 @@
 //! Progress on standard error: a bar for people, lines for logs, JSON for front-ends, or silence.
 
 use gonio_tracer::Progress;
+use gonio_tracer::scene::{Loading, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 use std::io::{IsTerminal, Write};
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+/// What comes before the render is only mentioned if it takes longer than this.
+const PATIENCE: Duration = Duration::from_millis(500);
+const RENDER: &str = "render";
 
 /// How progress is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -47,8 +52,25 @@ impl Report {
         Self { mode, stage: "", start: Instant::now(), bar: None, percent: None }
     }
 
+    /// Shows how far loading has come, if that takes long.
+    pub(super) fn loading(&mut self, loading: &Loading) {
+        let (stage, unit) = match loading.stage {
+            Stage::Reading => ("read", "bytes"),
+            Stage::Placing => ("place", "triangles"),
+            Stage::Building => ("build", "triangles"),
+        };
+        let Loading { done, of, .. } = *loading;
+        self.begin(stage);
+        let elapsed = self.start.elapsed();
+        if elapsed > PATIENCE {
+            let left = elapsed.as_secs_f64() * of.saturating_sub(done) as f64 / done.max(1) as f64;
+            self.show(&Step { done, of, unit, rate: None, left });
+        }
+    }
+
     /// Shows a finished pass of the render.
     pub(super) fn pass(&mut self, progress: &Progress) {
+        self.begin(RENDER);
         let left = f64::from(progress.spp.saturating_sub(progress.spp_done));
         let step = Step {
             done: u64::from(progress.spp_done),
@@ -57,14 +79,18 @@ impl Report {
             rate: Some(progress.samples as f64 / progress.seconds.max(1e-9) / 1e6),
             left: progress.seconds * left / f64::from(progress.spp_done.max(1)),
         };
-        self.show("render", &step);
+        self.show(&step);
     }
 
-    fn show(&mut self, stage: &'static str, step: &Step) {
+    fn begin(&mut self, stage: &'static str) {
         if self.stage != stage {
             self.finish();
             (self.stage, self.start, self.percent) = (stage, Instant::now(), None);
         }
+    }
+
+    fn show(&mut self, step: &Step) {
+        let stage = self.stage;
         let percent = step.done.saturating_mul(100).checked_div(step.of).unwrap_or(100);
         let news = self.percent != Some(percent);
         self.percent = Some(percent);
@@ -101,11 +127,14 @@ impl Report {
         }
     }
 
-    /// Leaves the line as it is, so that what comes next begins a line of its own.
+    /// Leaves the bar of a render as it is, so that what comes next begins a line of its own; others vanish.
     pub(super) fn finish(&mut self) {
-        if let Some(bar) = self.bar.take() {
+        let Some(bar) = self.bar.take() else { return };
+        if self.stage == RENDER {
             bar.abandon();
             let _ = writeln!(std::io::stderr());
+        } else {
+            bar.finish_and_clear();
         }
     }
 }
