@@ -4,10 +4,10 @@
 //! what loads obeys the invariants that [`Scene`] documents, and what is refused names a file, and if a line, one that
 //! the file has. It returns what happened, in words, so that runs can count how much of a parser they reach.
 
-use gonio_tracer::World;
-use gonio_tracer::image::read_exr;
-use gonio_tracer::scene::{Color, FresnelSpec, Material, Mesh, Model, Scene, SceneError};
+use gonio_tracer::image::{ImageError, Picture, read_exr};
+use gonio_tracer::scene::{Color, FresnelSpec, Material, Mesh, Model, Scene, SceneError, Sky};
 use gonio_tracer::texture::Texture;
+use gonio_tracer::{World, hdr};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -23,11 +23,12 @@ pub(crate) struct Target {
 }
 
 /// All parsers of files.
-pub(crate) const TARGETS: [Target; 7] = [
+pub(crate) const TARGETS: [Target; 8] = [
     Target { name: "scene", prepare: beside_a_scene, body: scene },
     Target { name: "obj", prepare: beside_a_scene, body: obj },
     Target { name: "mtl", prepare: beside_a_library, body: mtl },
     Target { name: "exr", prepare: nothing, body: exr },
+    Target { name: "hdr", prepare: nothing, body: radiance },
     Target { name: "texture", prepare: nothing, body: texture },
     Target { name: "directions", prepare: beside_directions, body: directions },
     Target { name: "material", prepare: beside_a_material, body: material },
@@ -104,13 +105,22 @@ fn mtl(folder: &Path, data: &[u8]) -> String {
 
 fn exr(folder: &Path, data: &[u8]) -> String {
     let path = write(folder, "fuzz.exr", data);
-    match read_exr(&path) {
+    judge_picture(read_exr(&path), &path)
+}
+
+fn radiance(folder: &Path, data: &[u8]) -> String {
+    let path = write(folder, "fuzz.hdr", data);
+    judge_picture(hdr::read(&path).map(|(picture, _)| picture), &path)
+}
+
+fn judge_picture(result: Result<Picture, ImageError>, path: &Path) -> String {
+    match result {
         Ok(picture) => {
             assert!(picture.width > 0 && picture.height > 0);
             assert_eq!(picture.rgb.len(), picture.width as usize * picture.height as usize);
             "read".to_owned()
         }
-        Err(error) => named(&error.to_string(), &path),
+        Err(error) => named(&error.to_string(), path),
     }
 }
 
@@ -221,8 +231,14 @@ pub(crate) fn assert_scene(scene: &Scene) {
     assert!(camera.up.is_finite() && view.normalize().cross(camera.up.normalize()).length() > 0.0, "{camera:?}");
     assert!(camera.vfov > 0.0 && camera.vfov < 180.0);
     assert!(scene.integrator.max_depth <= 1024);
-    let environment = scene.environment;
-    assert!([environment.r, environment.g, environment.b].iter().all(|c| (0.0..=1e6).contains(c)));
+    let in_range = |c: f32| (0.0..=1e6).contains(&c);
+    match &scene.environment.sky {
+        Sky::Constant(radiance) => assert!([radiance.r, radiance.g, radiance.b].into_iter().all(in_range)),
+        Sky::Map(map) => {
+            assert!(map.rotation.is_finite() && map.intensity >= 0.0);
+            assert!(map.picture.rgb.iter().flatten().all(|&c| c >= 0.0 && in_range(c * map.intensity)));
+        }
+    }
     assert!(scene.materials.len() <= 65_535);
     scene.materials.iter().for_each(|material| assert_material(material, scene.textures.len()));
     assert!(!scene.meshes.is_empty() && !scene.instances.is_empty());

@@ -121,10 +121,11 @@ fn exact(a: &Hit, b: &Hit) -> Option<Kind> {
 }
 
 fn close(specimen: &Specimen, ray: &Ray, a: &Hit, b: &Hit) -> Option<Kind> {
+    let within = |difference: f64, limit: f64| difference <= limit; // never for a NaN
     let off = f64::from((a.t - b.t).abs());
     let tolerance = TOLERANCE * f64::from(a.t.abs() + specimen.size());
     let same = id(a) == id(b);
-    if !same && !(off <= tolerance) {
+    if !same && !within(off, tolerance) {
         return Some(Kind::Prim);
     }
     let instances = specimen.geometry.instances();
@@ -135,13 +136,13 @@ fn close(specimen: &Specimen, ray: &Ray, a: &Hit, b: &Hit) -> Option<Kind> {
     let (e1, e2) = (corners[1] - corners[0], corners[2] - corners[0]);
     let dir = wide(ray.dir);
     let steepness = e1.cross(e2).dot(dir).abs() / (e1.length() * e2.length()).max(f64::MIN_POSITIVE);
-    if same && !(off * steepness <= tolerance) {
+    if same && !within(off * steepness, tolerance) {
         return Some(Kind::T);
     }
     let place = corners[0].along(b.bary[0].into(), e1).along(b.bary[1].into(), e2);
     let along = wide(ray.origin).along(b.t.into(), dir);
     let apart: Vec3<f64> = place - along;
-    (!(apart.length() * steepness <= tolerance + rounding(ray))).then_some(Kind::Bary)
+    (!within(apart.length() * steepness, tolerance + rounding(ray))).then_some(Kind::Bary)
 }
 
 /// Places as far from the origin as the ray's own start are rounded.

@@ -84,7 +84,7 @@ impl Caster<'_> {
         std::array::from_fn(|lane| {
             let dice = Dice { specimen: self.specimen, seed, index: number * 8 + lane as u64 };
             if family.is_inside() {
-                dice.from_inside(family, &self.balls[dice.pick(40, self.balls.len())])
+                dice.inside_out(family, &self.balls[dice.pick(40, self.balls.len())])
             } else {
                 dice.ray(family)
             }
@@ -336,7 +336,7 @@ impl Dice<'_> {
     }
 
     /// From anywhere in the inner three quarters of a ball.
-    fn from_inside(&self, family: Family, ball: &Ball) -> Ray {
+    fn inside_out(&self, family: Family, ball: &Ball) -> Ray {
         let reach = 0.75 * ball.radius;
         if family == Family::AxisFromInside {
             // Along the ball's own axis the ray meets a vertex or an edge exactly; along another it has one such coordinate.
