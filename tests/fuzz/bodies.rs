@@ -211,13 +211,13 @@ fn lines(path: &Path) -> usize {
     1 + bytes.iter().filter(|&&byte| byte == end).count()
 }
 
-/// A message without its numbers and names, so that outcomes can be counted.
+/// A message without what is quoted and without words that are not words, so that kinds of outcomes can be counted.
 pub(crate) fn plain(message: &str) -> String {
-    let parts = message.split('"').step_by(2);
-    let letters = |c: char| if c.is_ascii_alphabetic() || c == ' ' { c } else { '#' };
-    let mut text: String = parts.flat_map(|part| part.chars().map(letters).chain(['"'])).collect();
-    text.truncate(120);
-    text
+    let outside: Vec<&str> = message.split('"').step_by(2).collect();
+    let outside = outside.join(" ");
+    let letters = |word: &str| word.trim_end_matches([',', ';', ':', '.']).bytes().all(|b| b.is_ascii_alphabetic());
+    let words: Vec<&str> = outside.split_whitespace().filter(|word| letters(word)).take(16).collect();
+    words.join(" ")
 }
 
 /// Holds every invariant that [`Scene`] and its parts document.

@@ -17,7 +17,8 @@ pub(super) fn read(value: &Value<'_>) -> Result<DAffine3, SceneError> {
     let columns = whole.matrix3;
     let volume = columns.x_axis.length() * columns.y_axis.length() * columns.z_axis.length();
     // 1e-12: flatter than that, and f32 cannot tell it from a plane.
-    if !whole.is_finite() || !volume.is_finite() || columns.determinant().abs() <= 1e-12 * volume {
+    let flat = columns.determinant().abs() <= 1e-12 * volume || !whole.inverse().is_finite();
+    if !whole.is_finite() || !volume.is_finite() || flat {
         return Err(value.error("the transform cannot be inverted: it is not finite or squeezes space flat"));
     }
     Ok(whole)

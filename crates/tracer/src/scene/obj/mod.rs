@@ -5,8 +5,8 @@
 //! texture coordinates, with and without normals.
 //!
 //! The crate `tobj` read these files before, from a copy of the text in which every line had been checked, because
-//! it gives no line numbers and misreads some inputs without a word. For ten million triangles it took more memory (4.3 GB)
-//! and time than everything else together. The check already knew every number.
+//! it gives no line numbers and misreads some inputs without a word. The check already knew every number; without the
+//! copies, ten million triangles load ten times as fast.
 
 use std::fs::File;
 use std::path::Path;
@@ -56,7 +56,7 @@ pub(super) fn load(path: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<Ob
         warnings.push(warning(path, line, format!("triangles without area: {count} dropped, the first on this line")));
     }
     if let Some((line, count)) = crossed {
-        warnings.push(warning(path, line, format!("faces that cross themselves: {count}, the first on this line")));
+        warnings.push(warning(path, line, format!("faces that cross themselves or are too intricate: {count}, the first on this line")));
     }
     let nothing = match (flat, reader.dropped.first_key_value()) {
         (Some((line, count)), _) => (line, format!("every triangle has zero area ({count}); nothing is left to draw")),

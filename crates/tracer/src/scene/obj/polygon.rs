@@ -7,10 +7,14 @@
 
 use glam::{DVec2, DVec3};
 
+/// Steps of the search for ears before it is given up: a third of a second. A polygon of n corners takes about n² at most
+/// in practice, but a file can hold one of a million corners for which it is n³.
+const MOST_STEPS: usize = 1 << 26;
+
 /// Appends triangles as indices into `points`, oriented like the polygon; at least three points.
 ///
-/// Returns whether the polygon was simple. One that crosses itself, or has no area, still yields triangles, which need
-/// not cover it. Never more than `points.len() - 2` triangles.
+/// Returns whether the polygon was simple. One that crosses itself, has no area, or is too large to find out still yields
+/// triangles, which need not cover it. Never more than `points.len() - 2` triangles.
 pub(super) fn triangulate(points: &[DVec3], out: &mut Vec<[usize; 3]>) -> bool {
     let n = points.len();
     if n == 3 {
@@ -60,6 +64,8 @@ struct Ring<'a> {
     /// Corners that were not convex at last sight: only they can lie inside an ear. It only shrinks.
     reflex: Vec<usize>,
     cut: Vec<bool>,
+    /// What is left of [`MOST_STEPS`].
+    steps: usize,
 }
 
 impl<'a> Ring<'a> {
@@ -67,7 +73,8 @@ impl<'a> Ring<'a> {
         let n = points.len();
         let next = (0..n).map(|i| (i + 1) % n).collect();
         let prev = (0..n).map(|i| (i + n - 1) % n).collect();
-        let mut ring = Self { points, epsilon, next, prev, reflex: Vec::new(), cut: vec![false; n] };
+        let (reflex, cut) = (Vec::new(), vec![false; n]);
+        let mut ring = Self { points, epsilon, next, prev, reflex, cut, steps: MOST_STEPS };
         ring.reflex = (0..n).filter(|&i| ring.turn(i) <= epsilon).collect();
         ring
     }
@@ -80,6 +87,8 @@ impl<'a> Ring<'a> {
         while left > 3 {
             if self.is_ear(at) {
                 out.push([self.prev[at], at, self.next[at]]);
+            } else if self.steps == 0 && self.turn(at).abs() <= self.epsilon {
+                // dropped at once
             } else if refused < left {
                 refused += 1;
                 at = self.next[at];
@@ -97,7 +106,7 @@ impl<'a> Ring<'a> {
             left -= 1;
             refused = 0;
         }
-        simple &= self.turn(at) >= -self.epsilon;
+        simple &= self.steps > 0 && self.turn(at) >= -self.epsilon;
         if self.turn(at) > self.epsilon {
             // Starting at the lowest index keeps a quad's second triangle [0, 2, 3].
             let mut corners = [self.prev[at], at, self.next[at]];
@@ -116,9 +125,14 @@ impl<'a> Ring<'a> {
     }
 
     fn is_ear(&mut self, i: usize) -> bool {
+        self.steps = self.steps.saturating_sub(1);
         if self.turn(i) <= self.epsilon {
             return false;
         }
+        if self.steps == 0 {
+            return true; // given up: any convex corner will do
+        }
+        self.steps = self.steps.saturating_sub(self.reflex.len());
         let (points, cut) = (self.points, &self.cut);
         self.reflex.retain(|&r| !cut[r]);
         let (a, b, c) = (points[self.prev[i]], points[i], points[self.next[i]]);
@@ -153,6 +167,10 @@ impl<'a> Ring<'a> {
         self.next[before] = after;
         self.prev[after] = before;
         self.cut[i] = true;
+        if self.steps == 0 {
+            return after;
+        }
+        self.steps = self.steps.saturating_sub(self.reflex.len());
         let (points, cut) = (self.points, &self.cut);
         let (next, prev, epsilon) = (&self.next, &self.prev, self.epsilon);
         self.reflex.retain(|&r| {

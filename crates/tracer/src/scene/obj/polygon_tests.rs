@@ -145,3 +145,26 @@ fn a_thousand_corners_take_no_time() {
     assert_eq!(triangles.len(), spiky.len() - 2);
     assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
 }
+
+#[test]
+fn a_face_of_very_many_corners_ends() {
+    let n = 30_000;
+    let repeated: Vec<DVec3> = (0..n).map(|i| DVec3::new(f64::from(i.min(2)), f64::from(i % 2), 0.0)).collect();
+    // Two arms wound around each other: few ears, and every corner of the inner side is reflex.
+    let turn = |i: i32| f64::from(i.min(n - 1 - i)) * 0.02;
+    let radius = |i: i32| 1.0 + turn(i) + if i < n / 2 { 0.0 } else { 2.0 };
+    let spiral: Vec<DVec3> =
+        (0..n).map(|i| DVec3::new(radius(i) * turn(i).cos(), radius(i) * turn(i).sin(), 0.0)).collect();
+    let star: Vec<DVec3> = (0..n)
+        .map(|i| {
+            let (angle, radius) = (f64::from(i) * std::f64::consts::TAU / f64::from(n), f64::from(1 + i % 2));
+            DVec3::new(radius * angle.cos(), radius * angle.sin(), 0.0)
+        })
+        .collect();
+    for outline in [repeated, spiral, star] {
+        let mut triangles = Vec::new();
+        let start = std::time::Instant::now();
+        triangulate(&outline, &mut triangles);
+        assert!(triangles.len() <= outline.len() - 2 && start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
+    }
+}
