@@ -437,7 +437,7 @@ fn a_census_prints_its_rows_and_its_json_has_the_same_numbers() {
     assert_eq!(report["disagreements"].as_array().map(Vec::len), Some(0));
     let rows = report["rows"].as_array().unwrap();
     let backends = 1 + report["backends"].as_array().unwrap().len();
-    assert_eq!(rows.len(), 2 * 14 * backends);
+    assert_eq!(rows.len(), 2 * 15 * backends);
     for row in rows {
         let number = |name: &str| row[name].as_u64().unwrap_or_else(|| panic!("{name} in {row}"));
         assert!(number("rays") > 1000 && number("hits") > 0 && number("hits") <= number("rays"), "{row}");

@@ -195,10 +195,7 @@ fn values_out_of_range_are_refused_with_their_line() {
             "{ matrix = [1,0,0,0, 1,0,0,0, 0,0,1,0, 0,0,0,1] }",
             "the transform cannot be inverted: it is not finite or squeezes space flat",
         ),
-        (
-            "{ scale = [1, 1, 1e-320] }",
-            "the transform cannot be inverted: it is not finite or squeezes space flat",
-        ),
+        ("{ scale = [1, 1, 1e-320] }", "the transform cannot be inverted: it is not finite or squeezes space flat"),
         ("{ scale = 1e10 }", "the scene is 1e10 m wide; it must be 1e-6 to 1e9"),
     ] {
         let text = refused_scene(&format!("[[meshes]]\nfile = \"tri.obj\"\ntransform = [{transform}]\n"));

@@ -10,8 +10,9 @@
 //! **Agreement.** Embree has its own triangle tests, so hits are not those of `Brute` to the last bit: t is, up to rounding, and
 //! of triangles at equal t any may win. [`Intersect::Robust`] sets Embree's flag of that name: edge functions from exact
 //! vertices, watertight. [`Intersect::Fast`] leaves it out: Möller and Trumbore's test with the same leaks as ours.
-//! A ray whose origin lies in a triangle's plane may hit it at t = 0, where our own test says no; origins of secondary rays are
-//! off the plane by more than the rounding, so that no picture shows it.
+//! A ray whose origin lies exactly in a triangle's plane would hit it at t = 0, where our own test says no: on a floor at
+//! y = 0 no rounding lifts the origins of secondary rays. So Embree is asked for hits beyond the smallest normal number; where
+//! the plane is only met up to rounding, those origins are off it by more than that.
 //!
 //! This is the only file of the workspace with `unsafe`. What must hold for the calls:
 //!
@@ -270,7 +271,7 @@ fn record(ray: &Ray8) -> RTCRay8 {
         org_x: ray.origin.x.to_array(),
         org_y: ray.origin.y.to_array(),
         org_z: ray.origin.z.to_array(),
-        tnear: ray.t_min.max(F32x8::ZERO).to_array(),
+        tnear: ray.t_min.max(F32x8::splat(f32::MIN_POSITIVE)).to_array(), // not 0, see the top of this file
         dir_x: ray.dir.x.to_array(),
         dir_y: ray.dir.y.to_array(),
         dir_z: ray.dir.z.to_array(),

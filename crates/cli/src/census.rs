@@ -4,7 +4,7 @@
 //! renderers cast and those that break tracers, at several scales. Every backend is asked for the nearest hit, for
 //! occlusion, and for occlusion through an opacity filter. Where brute cannot look at all rays (its cost is rays times
 //! triangles) it looks at an even part of them, the others are compared among themselves, and brute is asked about each ray
-//! that they do not agree on.
+//! that they do not agree on; without end where the answer counts against a backend, as long as its patience lasts elsewhere.
 //!
 //! What counts as agreement is the backend's [`Standard`]; what may be left over is in [`judge`]. A census that sees nothing
 //! proves nothing: backends that are wrong on purpose ([`faults`]) must be noticed.
@@ -72,7 +72,8 @@ pub(crate) struct Plan<'a> {
     /// Packets of eight rays of each family, at each scale.
     pub(crate) packets: &'a dyn Fn(Family) -> u64,
     pub(crate) seed: u64,
-    /// How many pairs of packet and triangle brute may look at in all, disputes not counted.
+    /// How many pairs of packet and triangle brute may look at in all, judged disputes not counted; and as many
+    /// again for disputes that are only listed.
     pub(crate) brute_budget: u64,
 }
 
@@ -89,7 +90,9 @@ pub(crate) fn run(
     for &scale in plan.scales {
         let scaled = specimen.scaled(scale).with_context(|| format!("{} at scale {scale}", specimen.name))?;
         let oracle = Backend::Brute.build(&scaled.geometry, Intersect::Robust)?;
-        let witnesses = (plan.witnesses)(&scaled)?;
+        let mut witnesses = (plan.witnesses)(&scaled)?;
+        // The first is the reference: one that is right to the last bit, if there is one.
+        witnesses.sort_by_key(|witness| witness.standard != Standard::Exact);
         let scout = witnesses.first().map_or(&*oracle, |witness| &*witness.accel);
         let wanted = |family: &Family| (plan.packets)(*family) > 0;
         let inside = Family::ALL.iter().any(|family| family.is_inside() && wanted(family));
@@ -102,7 +105,8 @@ pub(crate) fn run(
             let packets = (plan.packets)(family);
             let pairs = packets * QUESTIONS * u64::from(scaled.count());
             let stride = pairs.div_ceil(share.max(1)).max(1);
-            let observer = Observer { specimen: &scaled, oracle: &*oracle, witnesses: &witnesses, stride };
+            let patience = (share / (QUESTIONS * u64::from(scaled.count())).max(1)).max(1);
+            let observer = Observer { specimen: &scaled, oracle: &*oracle, witnesses: &witnesses, stride, patience };
             observer.observe(&caster, family, packets, log);
         }
     }
@@ -118,6 +122,8 @@ pub(crate) struct Observer<'a> {
     pub(crate) witnesses: &'a [Witness],
     /// Brute looks at every n-th packet of eight.
     pub(crate) stride: u64,
+    /// How many packets brute may look at for the sake of disputes that are listed but not judged.
+    pub(crate) patience: u64,
 }
 
 impl Witness {
@@ -141,15 +147,24 @@ impl Observer<'_> {
         let row = |name: &str, standard| Row::new(&self.specimen.name, self.specimen.scale, family, name, standard);
         let mut rows = vec![row(ORACLE, Standard::Exact)];
         rows.extend(self.witnesses.iter().map(|w| row(&w.name, w.standard)));
-        let mut first = 0;
+        let (mut first, mut patience) = (0, self.patience);
         while first < packets {
             let numbers = first..packets.min(first + STREAM);
-            let stream = Stream::cast(self, family, numbers.start, caster.packets(family, numbers));
+            let stream = Stream::cast(self, family, numbers.start, caster.packets(family, numbers), &mut patience);
             stream.count(self, &mut rows, log);
             first += STREAM;
         }
         log.rows.extend(rows);
     }
+}
+
+/// A ray that the backends do not agree on.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Dispute {
+    /// Nothing depends on it.
+    Listed,
+    /// It counts against a backend: brute must be asked.
+    Judged,
 }
 
 /// Some packets and what everybody says of them.
@@ -164,7 +179,7 @@ struct Stream {
 }
 
 impl Stream {
-    fn cast(observer: &Observer, family: Family, first: u64, packets: Vec<Packet>) -> Self {
+    fn cast(observer: &Observer, family: Family, first: u64, packets: Vec<Packet>, patience: &mut u64) -> Self {
         let rays: Vec<Ray8> = packets.iter().map(|packet| packet.ray).collect();
         let numbers: Vec<u64> = (0..rays.len() as u64 * 8).map(|lane| first * 8 + lane).collect();
         let told = observer.witnesses.iter().map(|w| Answers::ask(&*w.accel, family.kind(), &rays, &numbers)).collect();
@@ -173,9 +188,15 @@ impl Stream {
         let seen: Vec<usize> =
             (0..rays.len()).filter(|&i| (first + i as u64).is_multiple_of(observer.stride)).collect();
         stream.ask_oracle(observer, seen.iter().flat_map(|&i| (0..F32x8::LANES).map(move |l| (i, l))).collect());
-        let disputed =
-            stream.lanes().filter(|&(i, l)| stream.oracle[i][l].is_none() && stream.disputed(observer, i, l));
-        stream.ask_oracle(observer, disputed.collect());
+        let disputes = stream.lanes().filter(|&(i, l)| stream.oracle[i][l].is_none());
+        let disputes = disputes.filter_map(|(i, l)| Some(((i, l), stream.dispute(observer, i, l)?)));
+        let (judged, listed): (Vec<_>, Vec<_>) = disputes.partition(|(_, dispute)| *dispute == Dispute::Judged);
+        let [judged, mut listed] =
+            [judged, listed].map(|part| part.into_iter().map(|(lane, _)| lane).collect::<Vec<_>>());
+        listed.truncate(patience.saturating_mul(F32x8::LANES as u64) as usize);
+        *patience -= (listed.len() as u64).div_ceil(F32x8::LANES as u64);
+        stream.ask_oracle(observer, judged);
+        stream.ask_oracle(observer, listed);
         stream
     }
 
@@ -206,14 +227,25 @@ impl Stream {
     }
 
     /// Whether somebody disagrees with the reference, or lets a ray through that must hit.
-    fn disputed(&self, observer: &Observer, i: usize, lane: usize) -> bool {
-        let Some((reference, others)) = self.told.split_first() else { return false };
-        let expected = reference.lane(i, lane);
+    fn dispute(&self, observer: &Observer, i: usize, lane: usize) -> Option<Dispute> {
+        let reference = self.told.first()?.lane(i, lane);
         let ray = one(&self.packets[i].ray, lane);
-        self.must_hit(i, lane) && self.told.iter().any(|told| told.lane(i, lane).leaks())
-            || others.iter().zip(&observer.witnesses[1..]).any(|(told, witness)| {
-                self.compare(witness.standard, observer.specimen, &ray, &expected, &told.lane(i, lane)).is_some()
-            })
+        let mut dispute = None;
+        for (w, (told, witness)) in self.told.iter().zip(observer.witnesses).enumerate() {
+            let answer = told.lane(i, lane);
+            let leaks = self.must_hit(i, lane) && answer.leaks();
+            let differs =
+                w > 0 && self.compare(witness.standard, observer.specimen, &ray, &reference, &answer).is_some();
+            if leaks || differs {
+                let judged = match witness.standard {
+                    Standard::Exact => true,
+                    Standard::Close => self.family.is_ordinary() || leaks && self.family == Family::EdgeFromInside,
+                    Standard::Reported => false,
+                };
+                dispute = dispute.max(Some(if judged { Dispute::Judged } else { Dispute::Listed }));
+            }
+        }
+        dispute
     }
 
     /// Adds these packets to the rows, brute's first.
@@ -235,8 +267,10 @@ impl Stream {
                 if must_hit && answer.leaks() {
                     kinds.push(Kind::Leak);
                 }
-                if let (Some(witness), Some(oracle)) = (witness, &oracle) {
-                    kinds.extend(self.compare(witness.standard, observer.specimen, &ray, oracle, &answer));
+                // Where brute did not look, the reference speaks for it.
+                let reference = oracle.or_else(|| (place > 0).then(|| self.told[0].lane(i, lane)));
+                if let (Some(witness), Some(reference)) = (witness, &reference) {
+                    kinds.extend(self.compare(witness.standard, observer.specimen, &ray, reference, &answer));
                 }
                 kinds.iter().for_each(|kind| row.note(*kind));
                 if !kinds.is_empty() {
@@ -298,7 +332,7 @@ mod tests {
         let witnesses = [Witness { name: "under test".to_owned(), accel: witness(specimen), standard }];
         let balls = inside::balls(specimen, &oracle, 1);
         let caster = Caster { specimen, scout: &oracle, balls: &balls, seed: 1 };
-        let observer = Observer { specimen, oracle: &oracle, witnesses: &witnesses, stride };
+        let observer = Observer { specimen, oracle: &oracle, witnesses: &witnesses, stride, patience: u64::MAX };
         let mut log = Log::default();
         for family in Family::ALL.into_iter().filter(|family| caster.has(*family)) {
             observer.observe(&caster, family, 128, &mut log);
@@ -339,7 +373,8 @@ mod tests {
         let witness = |name: &str, accel| Witness { name: name.to_owned(), accel, standard: Standard::Exact };
         let witnesses = [witness("right", obvhs(&specimen)), witness("wrong", (fault.plant)(obvhs(&specimen), 1.0))];
         let caster = Caster { specimen: &specimen, scout: &oracle, balls: &[], seed: 1 };
-        let observer = Observer { specimen: &specimen, oracle: &oracle, witnesses: &witnesses, stride: u64::MAX };
+        let observer =
+            Observer { specimen: &specimen, oracle: &oracle, witnesses: &witnesses, stride: u64::MAX, patience: 0 };
         let mut log = Log::default();
         observer.observe(&caster, Family::Random, 4096, &mut log);
         let [brute, right, wrong] = &log.rows[..] else { panic!("three rows") };

@@ -31,14 +31,16 @@ pub(crate) enum Family {
     Bounded,
     /// At triangles, edges and vertices from ten to a million times the size of the scene away.
     Far,
-    /// From inside of a closed surface at its edges and vertices.
+    /// From inside of a closed surface at its edges.
     EdgeFromInside,
+    /// From inside of a closed surface at its vertices.
+    VertexFromInside,
     /// From inside of a closed surface exactly along an axis, at the coordinates of a vertex or an edge.
     AxisFromInside,
 }
 
 impl Family {
-    pub(crate) const ALL: [Self; 14] = [
+    pub(crate) const ALL: [Self; 15] = [
         Self::Camera,
         Self::Bounce,
         Self::Shadow,
@@ -52,6 +54,7 @@ impl Family {
         Self::Bounded,
         Self::Far,
         Self::EdgeFromInside,
+        Self::VertexFromInside,
         Self::AxisFromInside,
     ];
 
@@ -62,7 +65,7 @@ impl Family {
 
     /// Rays that start inside of a closed surface: each must hit something.
     pub(crate) fn is_inside(self) -> bool {
-        matches!(self, Self::EdgeFromInside | Self::AxisFromInside)
+        matches!(self, Self::EdgeFromInside | Self::VertexFromInside | Self::AxisFromInside)
     }
 
     /// Rays aimed at places between triangles, so that many of them can leak.
@@ -92,6 +95,7 @@ impl fmt::Display for Family {
             Self::Bounded => "bounded",
             Self::Far => "far",
             Self::EdgeFromInside => "edge-from-inside",
+            Self::VertexFromInside => "vertex-from-inside",
             Self::AxisFromInside => "axis-from-inside",
         })
     }

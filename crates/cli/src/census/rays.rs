@@ -346,7 +346,7 @@ impl Dice<'_> {
             return self.open(ball.centre + slide, if self.pick(44, 4) == 0 { dir } else { own });
         }
         let origin = ball.centre.along(reach * self.u(41), self.direction(42));
-        let (to, target) = self.on_edge_or_vertex(44);
+        let (to, target) = if family == Family::VertexFromInside { self.vertex() } else { self.on_edge() };
         self.aimed(self.towards(origin, to), target)
     }
 }

@@ -22,7 +22,7 @@ pub(crate) struct Row {
     pub(crate) standard: Standard,
     pub(crate) rays: u64,
     pub(crate) hits: u64,
-    /// Rays whose answer brute knows; the others were compared with the first backend that is not brute.
+    /// Rays whose answer brute knows; the others were compared with the first backend that is not brute, obvhs as a rule.
     pub(crate) seen_by_brute: u64,
     /// Rays that a surface must stop.
     pub(crate) must_hit: u64,

@@ -56,7 +56,11 @@ pub(super) fn load(path: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<Ob
         warnings.push(warning(path, line, format!("triangles without area: {count} dropped, the first on this line")));
     }
     if let Some((line, count)) = crossed {
-        warnings.push(warning(path, line, format!("faces that cross themselves or are too intricate: {count}, the first on this line")));
+        warnings.push(warning(
+            path,
+            line,
+            format!("faces that cross themselves or are too intricate: {count}, the first on this line"),
+        ));
     }
     let nothing = match (flat, reader.dropped.first_key_value()) {
         (Some((line, count)), _) => (line, format!("every triangle has zero area ({count}); nothing is left to draw")),
