@@ -144,7 +144,9 @@ const STREAM: u64 = 64;
 impl Observer<'_> {
     /// Casts `packets` packets of a family. Adds a row for brute and each witness, and what they disagree on.
     pub(crate) fn observe(&self, caster: &Caster, family: Family, packets: u64, log: &mut Log) {
-        let row = |name: &str, standard| Row::new(&self.specimen.name, self.specimen.scale, family, name, standard);
+        let Specimen { name: specimen, scale, needles, .. } = self.specimen;
+        let row =
+            |name: &str, standard| Row { needles: *needles, ..Row::new(specimen, *scale, family, name, standard) };
         let mut rows = vec![row(ORACLE, Standard::Exact)];
         rows.extend(self.witnesses.iter().map(|w| row(&w.name, w.standard)));
         let (mut first, mut patience) = (0, self.patience);

@@ -63,6 +63,11 @@ impl Family {
         matches!(self, Self::Camera | Self::Bounce | Self::Shadow | Self::Random | Self::Secondary)
     }
 
+    /// Rays that start on a triangle, or next to it.
+    pub(crate) fn leaves_a_surface(self) -> bool {
+        matches!(self, Self::Bounce | Self::Shadow | Self::Secondary)
+    }
+
     /// Rays that start inside of a closed surface: each must hit something.
     pub(crate) fn is_inside(self) -> bool {
         matches!(self, Self::EdgeFromInside | Self::VertexFromInside | Self::AxisFromInside)

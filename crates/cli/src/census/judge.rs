@@ -48,7 +48,8 @@ pub(crate) fn is_judged(row: &Row) -> bool {
     match row.standard {
         _ if row.backend == ORACLE => false,
         Standard::Exact => true,
-        Standard::Close => row.family.is_ordinary(),
+        // Which side of a needle a ray starts on is rounding's to decide as well.
+        Standard::Close => row.family.is_ordinary() && !(row.needles && row.family.leaves_a_surface()),
         Standard::Reported => false,
     }
 }
@@ -124,6 +125,9 @@ mod tests {
         assert_eq!(verdict(&ordinary), [(What::Disagreements, 4, 3, false)]);
         assert_eq!(verdict(&ordinary[..1]), [(What::Disagreements, 2, 2, true)]);
         assert_eq!(verdict(&[row(Standard::Close, Family::Edge, 10, 10, 10)]), []);
+        let needles = |standard, family| verdict(&[Row { needles: true, ..row(standard, family, 10, 10, 0) }]).len();
+        assert_eq!(needles(Standard::Close, Family::Secondary), 0);
+        assert!(needles(Standard::Close, Family::Camera) > 0 && needles(Standard::Exact, Family::Secondary) > 0);
         assert_eq!(verdict(&[row(Standard::Close, Family::EdgeFromInside, 10, 10, 1)]), [(What::Leaks, 1, 0, false)]);
         assert_eq!(verdict(&[row(Standard::Close, Family::VertexFromInside, 10, 10, 1)]), []);
     }

@@ -20,6 +20,8 @@ pub(crate) struct Row {
     pub(crate) backend: String,
     /// How it was compared with brute.
     pub(crate) standard: Standard,
+    /// More than one triangle in a hundred is a needle.
+    pub(crate) needles: bool,
     pub(crate) rays: u64,
     pub(crate) hits: u64,
     /// Rays whose answer brute knows; the others were compared with the first backend that is not brute, obvhs as a rule.
@@ -120,6 +122,7 @@ impl Row {
             family,
             backend: backend.to_owned(),
             standard,
+            needles: false,
             rays: 0,
             hits: 0,
             seen_by_brute: 0,

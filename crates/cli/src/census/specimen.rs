@@ -21,6 +21,8 @@ pub(crate) struct Specimen {
     pub(crate) hi: Vec3<f32>,
     /// The corners of every emitting triangle.
     pub(crate) emitters: Vec<[Vec3<f32>; 3]>,
+    /// More than one triangle in a hundred is a needle, whose plane f32 hardly knows.
+    pub(crate) needles: bool,
     /// At scale 1.
     view: View,
     /// Of each mesh.
@@ -61,7 +63,8 @@ impl Specimen {
             starts.push(starts.last().map_or(0, |start| start + count));
         }
         let [lo, hi] = bounds(&geometry);
-        Self { name: name.to_owned(), geometry, scale: 1.0, lo, hi, emitters, view, topology, starts }
+        let needles = 100 * geometry.world_triangles().filter(is_needle).count() > geometry.triangle_count();
+        Self { name: name.to_owned(), geometry, scale: 1.0, lo, hi, emitters, needles, view, topology, starts }
     }
 
     /// The same with all lengths multiplied.
@@ -120,6 +123,13 @@ impl Specimen {
         let ray = self.view.rays(x, y);
         Ray8 { origin: ray.origin * F32x8::splat(self.scale as f32), ..ray }
     }
+}
+
+/// Whether two sides are parallel to a thousandth.
+fn is_needle(t: &WorldTriangle) -> bool {
+    let [a, b, c] = t.corners.map(wide);
+    let (e1, e2) = (b - a, c - a);
+    e1.cross(e2).length() <= 1e-3 * e1.length() * e2.length()
 }
 
 /// The bounds of everything that is placed; a point at the origin if there is nothing.
