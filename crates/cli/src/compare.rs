@@ -16,8 +16,8 @@ use std::process::ExitCode;
 
 /// Compare two pictures of one scene.
 ///
-/// Prints the means, the root mean square error, relMSE = mean of (B − A)²/(A² + 0.01), how many pixels differ at all and
-/// how many of those have no differing neighbour, and a test: in blocks of 8 × 8 pixels and as a whole, is the mean of B − A
+/// Prints the means, the root mean square error, relMSE = mean of (B − A)²/(A² + 0.01), how many pixels differ by more than
+/// a thousandth and how many of those have no such neighbour, and a test: in blocks of 8 × 8 pixels and as a whole, is the mean of B − A
 /// zero, as far as the spread of the pixels can tell? With the feature `flip`, also the mean of FLIP (Andersson et al. 2020)
 /// between the pictures as they look on a screen. The test holds for pixels with independent noise (a box filter, other
 /// seeds or other renderers); its significance covers all blocks and channels together. A is the reference.
@@ -114,9 +114,11 @@ fn as_text(a: &Picture, found: &Difference, flip: Option<f64>) -> String {
     let (pixels, largest) = (a.rgb.len(), found.largest);
     let _ = writeln!(
         text,
-        "\n{} of {pixels} pixels differ, {} of them without a differing neighbour; {} are not numbers\n\
+        "\n{} of {pixels} pixels differ in some bit, {} by more than a thousandth, {} of these without such a neighbour; {} \
+         are not numbers\n\
          largest difference {:.4e} at pixel {},{}\n\
          block test: {} of {} fail at {:.2e} each; least p {:.3e} in {}\n{}",
+        found.unequal,
         found.differing,
         found.isolated,
         found.not_numbers,
@@ -146,6 +148,7 @@ fn as_json(args: &Args, found: &Difference, flip: Option<f64>) -> serde_json::Va
         "rmse": found.rmse,
         "rel_mse": found.rel_mse,
         "flip": flip,
+        "unequal_pixels": found.unequal,
         "differing_pixels": found.differing,
         "isolated_pixels": found.isolated,
         "pixels_not_numbers": found.not_numbers,

@@ -41,9 +41,9 @@ pub(crate) struct Tested {
     pub(crate) p: f64,
 }
 
-/// Tests the whole picture and then each block, by channel. `slack` is the relative difference from what is expected that is
-/// rounding and not chance.
-pub(crate) fn test_blocks(picture: &Picture, expected: [f64; 3], slack: f64) -> impl Iterator<Item = Tested> {
+/// Tests the whole picture and then each block, by channel. `slack` is the difference from what is expected that is rounding
+/// and not chance.
+pub(crate) fn test_blocks(picture: &Picture, expected: [f64; 3], slack: [f64; 3]) -> impl Iterator<Item = Tested> {
     let whole = [0, picture.width, 0, picture.height];
     let columns = (0..picture.width).step_by(BLOCK as usize);
     let blocks = columns.flat_map(|x| (0..picture.height).step_by(BLOCK as usize).map(move |y| [x, y]));
@@ -51,15 +51,15 @@ pub(crate) fn test_blocks(picture: &Picture, expected: [f64; 3], slack: f64) -> 
     std::iter::once(whole).chain(blocks).flat_map(move |area| {
         [0, 1, 2].map(|channel| {
             let [mean, error, n] = mean_and_error(picture, area, channel);
-            let deviation = (mean - expected[channel]).abs() - slack * expected[channel];
+            let deviation = (mean - expected[channel]).abs() - slack[channel];
             Tested { area, channel, mean, error, p: student_p(deviation, error, n - 1.0) }
         })
     })
 }
 
-/// Compares a picture with the radiance that all its pixels should have.
+/// Compares a picture with the radiance that all its pixels should have; `slack` is relative to that.
 pub(crate) fn worst_block(picture: &Picture, expected: [f64; 3], slack: f64) -> Worst {
-    let all = test_blocks(picture, expected, slack);
+    let all = test_blocks(picture, expected, expected.map(|x| slack * x));
     // The first of equals: the whole picture.
     let worst = all.reduce(|a, b| if b.p < a.p { b } else { a }).expect("a picture has pixels");
     let Tested { channel, mean, error, p, .. } = worst;
