@@ -165,6 +165,8 @@ fn a_face_of_very_many_corners_ends() {
         let mut triangles = Vec::new();
         let start = std::time::Instant::now();
         triangulate(&outline, &mut triangles);
-        assert!(triangles.len() <= outline.len() - 2 && start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
+        let seconds = start.elapsed().as_secs_f64();
+        println!("{} triangles in {seconds} s", triangles.len());
+        assert!(triangles.len() <= outline.len() - 2 && seconds < 30.0, "{seconds} s");
     }
 }
