@@ -7,9 +7,9 @@
 
 use glam::{DVec2, DVec3};
 
-/// Steps of the search for ears before it is given up, each about a nanosecond. A simple polygon of n corners takes about n²
+/// Steps of the search for ears before it is given up, each a few nanoseconds. A simple polygon of n corners takes about n²
 /// in practice, so this is enough for 20,000 corners; but a file can hold one of a million for which it is n³.
-const MOST_STEPS: usize = 1 << 29;
+const MOST_STEPS: usize = 1 << 28;
 /// Steps that one look at a corner counts for.
 const LOOK: usize = 8;
 
