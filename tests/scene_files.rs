@@ -131,6 +131,9 @@ fn unknown_keys_and_bad_syntax_are_named_with_their_line() {
     let text = refused_scene("[film]\nwidth = = 4\n");
     assert!(text.starts_with("scene.toml:2: "), "{text}");
     assert_eq!(refused_scene("\n"), "scene.toml:1: the scene has no [[meshes]]: there is nothing to render");
+    let broken = "{ rue\nemission = [1, 2, 3]\nlobe ".repeat(2000); // overflowed the stack of the parser
+    let text = format!("[materials.a]\nlobes = {broken}");
+    assert_eq!(refused_scene(&text), "scene.toml:129: brackets are nested more than 64 deep");
 }
 
 #[test]

@@ -9,8 +9,8 @@ use gonio_kernel::Rgb;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::SceneError;
 use super::error::quoted;
+use super::{SceneError, nesting};
 
 /// The text and its name: turns a place in it into a line.
 #[derive(Clone, Copy)]
@@ -25,6 +25,9 @@ impl<'d> Document<'d> {
     /// # Errors
     /// What `toml` says about the syntax, with the line.
     pub(super) fn parse(&self) -> Result<Spanned<DeTable<'d>>, SceneError> {
+        if let Some((at, why)) = nesting::fault(self.text) {
+            return Err(self.error(at, why));
+        }
         DeTable::parse(self.text)
             .map_err(|error| self.error(error.span().map_or(0, |span| span.start), error.message().replace('\n', ", ")))
     }

@@ -21,6 +21,7 @@ mod error;
 mod file;
 mod material;
 mod mtl;
+mod nesting;
 mod obj;
 mod paths;
 mod textures;
