@@ -102,7 +102,11 @@ pub(crate) fn run(
         let share = plan.brute_budget / (families.len() * plan.scales.len()).max(1) as u64;
         for family in families {
             progress(scale, family);
-            let packets = (plan.packets)(family);
+            let mut packets = (plan.packets)(family);
+            if family == Family::Far {
+                // Boxes are padded in proportion to the distance, so that from far enough away a tree tests every triangle.
+                packets = packets.min((plan.brute_budget / u64::from(scaled.count().max(1))).max(STREAM / 8));
+            }
             let pairs = packets * QUESTIONS * u64::from(scaled.count());
             let stride = pairs.div_ceil(share.max(1)).max(1);
             let patience = (share / (QUESTIONS * u64::from(scaled.count())).max(1)).max(1);

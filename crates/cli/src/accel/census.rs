@@ -31,7 +31,8 @@ use std::time::Instant;
 pub(super) struct Args {
     /// Scene file (.toml) or OBJ file (.obj)
     scene: PathBuf,
-    /// Rays of each family at each scale; the families that start inside of closed surfaces get four times as many
+    /// Rays of each family at each scale; the families that start inside of closed surfaces get four times as many, the rays
+    /// from far away fewer in large scenes, where they cost as much as brute force
     #[arg(long, value_name = "N", default_value = "1e5", value_parser = count)]
     rays: u64,
     /// Where all random choices come from

@@ -2,8 +2,8 @@
 //!
 //! An exact backend may not differ from brute in one bit of one ray, and may leak nowhere. A close one may differ on at most
 //! 1 in 10⁵ ordinary rays, and may not leak at edges from inside of closed surfaces. That Embree does leak at vertices, in its
-//! robust mode, about once in ten thousand rays aimed exactly at one, is a fact that is counted and listed, not a fault of
-//! ours; and what it does with rays aimed at edges, vertices and planes otherwise is rounding's to decide. Of a fast backend
+//! robust mode too, is counted and listed, but is no fault of ours; and what it does with rays aimed at edges, vertices and
+//! planes otherwise is rounding's to decide. Of a fast backend
 //! nothing is required.
 
 use super::family::Family;
