@@ -107,6 +107,29 @@ fn backends_that_are_exact_up_to_rounding_render_the_same_picture_but_for_isolat
 }
 
 #[test]
+fn scenes_have_the_same_fingerprint_exactly_if_they_look_the_same() {
+    let print = |scene: &Scene| World::new(scene).expect("the scene is sound").fingerprint();
+    let scene = varied();
+    assert_eq!(print(&scene), print(&scene.clone()));
+    let changed = |change: &dyn Fn(&mut Scene)| {
+        let mut other = scene.clone();
+        change(&mut other);
+        print(&other)
+    };
+    let prints = [
+        print(&scene),
+        changed(&|s| s.meshes[0].positions[3][1] += 1e-3),
+        changed(&|s| s.materials[0].two_sided ^= true),
+        changed(&|s| s.camera.vfov += 1.0),
+        changed(&|s| s.environment = Environment::constant(Rgb::splat(0.25))),
+        changed(&|s| s.film.width += 1),
+    ];
+    for (i, print) in prints.iter().enumerate() {
+        assert!(!prints[..i].contains(print), "change {i} does not show");
+    }
+}
+
+#[test]
 fn a_crop_has_the_pixels_of_the_whole_picture() {
     let scene = cornell_box(40, 3);
     let whole = rendered(&scene, Backend::Obvhs, |_| ()).picture;

@@ -108,6 +108,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let origin = Origin {
         scene_file: &args.scene,
         scene: &scene,
+        scene_hash: world.fingerprint(),
         settings: &settings,
         backend: args.backend,
         intersect: intersect(args),

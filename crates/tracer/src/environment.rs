@@ -25,6 +25,7 @@
 //! Near a pole cosθ says nothing in `f32`. Heights are kept as sin²(θ/2), measured from the nearer pole.
 
 use crate::alias::{alias_table, pick};
+use crate::fingerprint::Fingerprint;
 use crate::image::Picture;
 use crate::sampler::Random4;
 use gonio_kernel::math::{atan2_turns, sin_cos_turns};
@@ -126,6 +127,12 @@ impl EnvironmentMap {
             column_alias,
             pdf_per_luminance: (1.0 / power) as f32,
         })
+    }
+
+    /// Takes the map into a fingerprint.
+    pub(crate) fn describe(&self, print: &mut Fingerprint) {
+        self.picture.rgb.as_flattened().iter().for_each(|x| print.bytes(&x.to_le_bytes()));
+        [self.intensity, self.rotation].iter().for_each(|x| print.bytes(&x.to_le_bytes()));
     }
 
     /// Radiance and density of eight unit directions.

@@ -5,6 +5,7 @@
 //! would depend on the order. Rounding to the unit is dithered by a hash of (pixel, sample), because plain truncation
 //! loses half a unit per sample: 10 % at radiance 1e-6. What is not finite or too large is dropped and counted.
 
+use crate::fingerprint::Fingerprint;
 use crate::sampler::hash2;
 
 /// Units per 1.0 of radiance.
@@ -77,19 +78,14 @@ pub(crate) fn round_to_i64(x: f64) -> i64 {
     (x + MAGIC).to_bits().wrapping_sub(MAGIC.to_bits()).cast_signed()
 }
 
-/// A hash of all sums and counts, in pixel order: equal pictures have equal hashes, to the last bit. FNV-1a, 64 bits.
+/// A hash of all sums and counts, in pixel order: equal pictures have equal hashes, to the last bit.
 pub(crate) fn hash<'a>(pixels: impl Iterator<Item = &'a Pixel>) -> String {
-    let mut h = 0xcbf2_9ce4_8422_2325_u64;
-    let mut eat = |word: u64| {
-        for byte in word.to_le_bytes() {
-            h = (h ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    };
+    let mut fingerprint = Fingerprint::new();
     for p in pixels {
-        p.sum.iter().for_each(|s| eat(s.cast_unsigned()));
-        eat(u64::from(p.count) << 32 | u64::from(p.dropped));
+        p.sum.iter().for_each(|s| fingerprint.bytes(&s.to_le_bytes()));
+        fingerprint.bytes(&(u64::from(p.count) << 32 | u64::from(p.dropped)).to_le_bytes());
     }
-    format!("{h:016x}")
+    fingerprint.text()
 }
 
 #[cfg(test)]

@@ -31,6 +31,7 @@ mod alias;
 mod backend;
 mod environment;
 mod film;
+mod fingerprint;
 pub mod hdr;
 pub mod image;
 mod layers;

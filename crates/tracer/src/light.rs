@@ -7,6 +7,7 @@
 
 use crate::alias::{alias_table, pick};
 use crate::environment::EnvironmentMap;
+use crate::fingerprint::Fingerprint;
 use crate::scene::{Environment, Sky};
 use gonio_kernel::{F32x8, Real, Rgb, U32x8, Vec3, each_lane};
 
@@ -87,6 +88,16 @@ impl Lights {
     #[inline(always)]
     pub(crate) fn shining_sky(&self) -> Option<&PreparedSky> {
         self.sky.as_ref().filter(|_| self.sky_illuminates)
+    }
+
+    /// Takes the environment into a fingerprint.
+    pub(crate) fn describe_sky(&self, print: &mut Fingerprint) {
+        match &self.sky {
+            None => {}
+            Some(PreparedSky::Constant(radiance)) => print.bytes(format!("{radiance:?}").as_bytes()),
+            Some(PreparedSky::Map(map)) => map.describe(print),
+        }
+        print.bytes(&[u8::from(self.camera_sees_sky), u8::from(self.sky_illuminates)]);
     }
 
     /// Probability of asking the environment.

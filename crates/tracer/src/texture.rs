@@ -56,6 +56,11 @@ impl Texture {
         self.height
     }
 
+    /// The encoded texels, rows from the top.
+    pub(crate) fn texels(&self) -> &[[u8; 3]] {
+        &self.texels
+    }
+
     /// Linear Rec. 709 colour at texture coordinates, each channel in [0, 1].
     ///
     /// Bilinear between texel centres (at +0.5), repeating; v = 0 is the bottom edge. Every input has an answer: a

@@ -27,7 +27,7 @@ use std::time::Instant;
 /// Measure how many rays per second each backend casts.
 ///
 /// Ray sets: primary (camera rays in blocks of four by two pixels, tile by tile), diffuse bounces from their hits, rays from
-/// anywhere in any direction, shadow rays to the lights (to anywhere in the scene without lights), and ambient occlusion.
+/// anywhere in any direction, shadow rays to the lights (to a wide lamp above everything without lights), and ambient occlusion.
 /// Every backend is measured with its robust and its fast triangle test; primary rays are announced once as coherent and once
 /// as not.
 #[derive(clap::Args)]

@@ -11,7 +11,7 @@ pub(crate) enum Family {
     Camera,
     /// From camera hits, distributed by cosine.
     Bounce,
-    /// From camera hits to a point of a light, or anywhere in the bounds without lights.
+    /// From camera hits to a point of a light, or of a wide lamp above everything if there is none.
     Shadow,
     /// From anywhere in any direction.
     Random,

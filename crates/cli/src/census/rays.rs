@@ -117,7 +117,8 @@ pub(crate) fn shadows(specimen: &Specimen, rays: &[Ray8], hits: &[Hit8], seed: u
             let dice = Dice { specimen, seed, index: index + l as u64 };
             match specimen.emitters.get(dice.pick(2, specimen.emitters.len())) {
                 Some(corners) => dice.within(corners),
-                None => dice.in_bounds([3, 4, 5].map(|dimension| dice.u(dimension))),
+                // A lamp above everything, twice as wide.
+                None => dice.in_bounds([2.0 * dice.u(3) - 0.5, 1.5 + 0.5 * dice.u(4), 2.0 * dice.u(5) - 0.5]),
             }
         }) - start.origin;
         let distance = to.length();

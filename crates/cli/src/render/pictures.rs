@@ -13,6 +13,8 @@ use std::path::Path;
 pub(super) struct Origin<'a> {
     pub(super) scene_file: &'a Path,
     pub(super) scene: &'a Scene,
+    /// Of the world, see [`gonio_tracer::World::fingerprint`].
+    pub(super) scene_hash: String,
     pub(super) settings: &'a RenderSettings,
     pub(super) backend: Backend,
     pub(super) intersect: Intersect,
@@ -59,6 +61,7 @@ fn metadata(origin: &Origin, rendering: &Rendering) -> Metadata {
     let aspect = f64::from(film.width) / f64::from(film.height);
     let other = vec![
         ("scene".to_owned(), origin.scene_file.display().to_string()),
+        ("scene_hash".to_owned(), origin.scene_hash.clone()),
         ("intersect".to_owned(), origin.intersect.to_string()),
         ("plan".to_owned(), settings.plan.to_string()),
         ("russian_roulette".to_owned(), settings.russian_roulette.to_string()),

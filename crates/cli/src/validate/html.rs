@@ -1,5 +1,6 @@
 //! The report as one self-contained page: no script, nothing loaded, light and dark, readable on a phone.
 
+use super::census_table;
 use super::draw::figure;
 use super::grade::{groups, severity, short, verdict, worst};
 use super::report::Report;
@@ -30,6 +31,7 @@ pub(super) fn page(report: &Report, exhibits: &[Exhibit], plots: &[Plot]) -> Str
     failures(&mut page, report);
     overview(&mut page, report);
     pictures(&mut page, exhibits);
+    page += &census_table::table(&report.census);
     speeds(&mut page, exhibits);
     lobes(&mut page, plots);
     page += "<h2>Every check</h2>\n";
