@@ -29,8 +29,9 @@ impl Pixel {
         // A NaN fails the comparison.
         let counts = rgb.iter().all(|x| x.abs() < LARGEST);
         if counts {
+            let dither = Dither::of(pixel, sample);
             for (sum, x) in self.sum.iter_mut().zip(rgb) {
-                *sum += units(x, pixel, sample);
+                *sum += dither.units(x);
             }
         } else {
             self.dropped += 1;
@@ -43,7 +44,7 @@ impl Pixel {
         self.mean_of(self.sum)
     }
 
-    /// The mean over this pixel's samples of a sum of [`units`].
+    /// The mean over this pixel's samples of a sum of [`Dither::units`].
     pub(crate) fn mean_of(&self, sum: [i64; 3]) -> [f32; 3] {
         let scale = if self.count > 0 { 1.0 / (UNIT * f64::from(self.count)) } else { 0.0 };
         sum.map(|s| (s as f64 * scale) as f32)
@@ -65,11 +66,22 @@ impl Pixel {
     }
 }
 
-/// A radiance in units, rounded with the dither of its sample.
-#[inline]
-pub(crate) fn units(x: f32, pixel: u32, sample: u32) -> i64 {
-    let dither = f64::from(hash2(pixel, sample)) / 4_294_967_296.0 - 0.5;
-    round_to_i64(f64::from(x).mul_add(UNIT, dither))
+/// How a sample is rounded: the same for all its values, so that what is no larger stays no larger.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Dither(f64);
+
+impl Dither {
+    /// That of a sample, in [−0.5, 0.5).
+    #[inline]
+    pub(crate) fn of(pixel: u32, sample: u32) -> Self {
+        Self(f64::from(hash2(pixel, sample)) / 4_294_967_296.0 - 0.5)
+    }
+
+    /// A radiance in units.
+    #[inline]
+    pub(crate) fn units(self, x: f32) -> i64 {
+        round_to_i64(f64::from(x).mul_add(UNIT, self.0))
+    }
 }
 
 /// The nearest integer of |x| < 2⁵¹: adding 1.5·2⁵² leaves it in the low bits, with no cast that could hide a NaN.

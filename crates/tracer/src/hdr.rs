@@ -17,7 +17,7 @@ use exr::meta::header::Header;
 use image::ImageDecoder;
 use image::codecs::hdr::HdrDecoder;
 
-use crate::image::{ImageError, Picture, failure, read_exr};
+use crate::image::{ImageError, Picture, REC_709, failure, read_exr};
 
 /// Most pixels along an edge.
 const MAX_EDGE: usize = 65_536;
@@ -25,8 +25,7 @@ const MAX_EDGE: usize = 65_536;
 const MAX_PIXELS: usize = 1 << 28;
 /// Most pixels per byte of a file: no picture of interest is packed closer, by any of the formats' compressions.
 const MAX_PIXELS_PER_BYTE: usize = 4096;
-/// (x, y) of the primaries and the white of Rec. 709, and how far a file may be from them.
-const REC_709: [[f32; 2]; 4] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]];
+/// How far a file's chromaticities may be from those of Rec. 709.
 const SAME_CHROMATICITY: f32 = 0.002;
 
 /// Reads a picture of radiance, and what was noticed on the way: one sentence each.

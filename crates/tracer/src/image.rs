@@ -12,8 +12,11 @@ use ::exr::meta::attribute::{Chromaticities, IntegerBounds};
 use ::exr::prelude::{self as exr, ReadChannels, ReadLayers, WritableImage};
 
 use crate::layers::Layers;
-use crate::texture::SRGB_TO_LINEAR;
+use crate::texture::{SRGB_TO_LINEAR, decode_srgb8};
 use crate::whole_file::WholeFile;
+
+/// (x, y) of the primaries and the white of Rec. 709.
+pub(crate) const REC_709: [[f32; 2]; 4] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]];
 
 /// A picture in linear Rec. 709, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,12 +117,8 @@ pub fn encode_exr(picture: &Picture, layers: Option<&Layers>, metadata: &Metadat
     if let Some(Window { of: [width, height], .. }) = metadata.window {
         image.attributes.display_window = IntegerBounds::from_dimensions((width as usize, height as usize));
     }
-    image.attributes.chromaticities = Some(Chromaticities {
-        red: exr::Vec2(0.64, 0.33),
-        green: exr::Vec2(0.30, 0.60),
-        blue: exr::Vec2(0.15, 0.06),
-        white: exr::Vec2(0.3127, 0.3290),
-    });
+    let [red, green, blue, white] = REC_709.map(|[x, y]| exr::Vec2(x, y));
+    image.attributes.chromaticities = Some(Chromaticities { red, green, blue, white });
     let mut bytes = Vec::new();
     image
         .write()
@@ -266,14 +265,8 @@ pub fn read_picture(path: &Path) -> Result<Picture, ImageError> {
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
         return read_exr(path);
     }
-    let decoded = image::ImageReader::open(path)
-        .and_then(image::ImageReader::with_guessed_format)
-        .map_err(|error| failure(path, format!("cannot be read: {error}")))?
-        .decode()
-        .map_err(|error| failure(path, format!("cannot be decoded: {error}")))?
-        .into_rgb8();
-    let (width, height) = decoded.dimensions();
-    let rgb = decoded.pixels().map(|p| p.0.map(|byte| SRGB_TO_LINEAR[usize::from(byte)])).collect();
+    let (width, height, encoded) = decode_srgb8(path).map_err(|why| failure(path, why))?;
+    let rgb = encoded.into_iter().map(|pixel| pixel.map(|byte| SRGB_TO_LINEAR[usize::from(byte)])).collect();
     Ok(Picture { width, height, rgb })
 }
 

@@ -14,7 +14,7 @@
 //! bits, so that the variance is exact however small it is beside the mean: a sample is below 2⁴³ units, its square below
 //! 2⁸⁶, and 2²⁰ of them below 2¹⁰⁶.
 
-use crate::film::{Pixel, UNIT, round_to_i64, units};
+use crate::film::{Dither, Pixel, UNIT, round_to_i64};
 
 /// What a camera ray sees first, by path.
 #[derive(Clone, Copy, Debug, Default)]
@@ -78,10 +78,11 @@ impl LayerSums {
         depth_unit: DepthUnit,
         (pixel, sample): (u32, u32),
     ) {
+        // The same dither as the picture's, so that direct never exceeds the whole.
+        let dither = Dither::of(pixel, sample);
         for channel in 0..3 {
-            // The same dither as the picture's, so that direct never exceeds the whole.
-            self.direct[channel] += units(direct[channel], pixel, sample);
-            self.squares[channel] += square(units(rgb[channel], pixel, sample));
+            self.direct[channel] += dither.units(direct[channel]);
+            self.squares[channel] += square(dither.units(rgb[channel]));
             self.albedo[channel] += round_to_i64(f64::from(first.albedo[channel]) * UNIT);
             self.normal[channel] += round_to_i64(f64::from(first.normal[channel]) * UNIT);
         }

@@ -26,14 +26,7 @@ impl Texture {
     /// # Errors
     /// A sentence without the file's name: it cannot be opened, is not a PNG or JPEG, is corrupt or too large.
     pub fn load(path: &Path) -> Result<Self, String> {
-        let image = image::ImageReader::open(path)
-            .and_then(image::ImageReader::with_guessed_format)
-            .map_err(|error| format!("cannot be read: {error}"))?
-            .decode()
-            .map_err(|error| format!("cannot be decoded: {error}"))?
-            .into_rgb8();
-        let (width, height) = image.dimensions();
-        let texels = image.pixels().map(|pixel| pixel.0).collect();
+        let (width, height, texels) = decode_srgb8(path)?;
         Self::from_srgb8(width, height, texels).ok_or_else(|| "has no pixels".to_owned())
     }
 
@@ -79,6 +72,18 @@ impl Texture {
         let encoded = self.texels[y as usize * self.width as usize + x as usize];
         encoded.map(|byte| SRGB_TO_LINEAR[usize::from(byte)])
     }
+}
+
+/// Width, height and 8-bit sRGB pixels of a PNG or JPEG file, rows from the top; see [`Texture::load`].
+pub(crate) fn decode_srgb8(path: &Path) -> Result<(u32, u32, Vec<[u8; 3]>), String> {
+    let image = image::ImageReader::open(path)
+        .and_then(image::ImageReader::with_guessed_format)
+        .map_err(|error| format!("cannot be read: {error}"))?
+        .decode()
+        .map_err(|error| format!("cannot be decoded: {error}"))?
+        .into_rgb8();
+    let (width, height) = image.dimensions();
+    Ok((width, height, image.pixels().map(|pixel| pixel.0).collect()))
 }
 
 /// The two texels around a coordinate in one direction, and the share of the second.
