@@ -243,11 +243,9 @@ impl Stream {
             let differs =
                 w > 0 && self.compare(witness.standard, observer.specimen, &ray, &reference, &answer).is_some();
             if leaks || differs {
-                let judged = match witness.standard {
-                    Standard::Exact => true,
-                    Standard::Close => self.family.is_ordinary() || leaks && self.family == Family::EdgeFromInside,
-                    Standard::Reported => false,
-                };
+                let needles = observer.specimen.needles;
+                let judged = differs && judge::counts_disagreements(witness.standard, self.family, needles)
+                    || leaks && judge::counts_leaks(witness.standard, self.family);
                 dispute = dispute.max(Some(if judged { Dispute::Judged } else { Dispute::Listed }));
             }
         }

@@ -4,7 +4,7 @@
 mod flip;
 mod measure;
 
-use crate::output::{Target, write_text};
+use crate::output::{Target, extension, write_text};
 use crate::usage::Usage;
 use anyhow::Result;
 use gonio_tracer::image::{Metadata, Picture, read_picture, write_exr, write_png};
@@ -79,7 +79,7 @@ fn flip(_: &Picture, _: &Picture) -> Option<f64> {
 }
 
 fn write_difference(path: &Path, a: &Picture, found: &Difference) -> Result<()> {
-    match path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase().as_str() {
+    match extension(path).as_str() {
         "exr" => {
             let version = env!("CARGO_PKG_VERSION").to_owned();
             let metadata = Metadata { version, ..Metadata::default() };

@@ -104,6 +104,11 @@ pub(crate) fn probe(path: &Path) -> Result<()> {
     WholeFile::probe(path).with_context(|| unwritable(path.display()))
 }
 
+/// The extension in lower case.
+pub(crate) fn extension(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+}
+
 /// What is said before the reason.
 fn unwritable(target: impl fmt::Display) -> String {
     format!("{target}: cannot be written")

@@ -4,14 +4,15 @@ mod pictures;
 mod progress;
 mod stats;
 
-use crate::output::{Output, Target, probe, write_text};
+use crate::output::{Output, Target, extension, probe, write_text};
 use crate::signals;
 use crate::usage::{Usage, several, warn};
 use anyhow::Result;
 use gonio_accel::Intersect;
 use gonio_tracer::scene::Scene;
 use gonio_tracer::{Backend, Crop, RenderSettings, World};
-use pictures::{Origin, extension, is_picture};
+use pictures::{Origin, is_picture};
+use std::cell::LazyCell;
 use std::io::{self, IsTerminal};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -108,7 +109,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let origin = Origin {
         scene_file: &args.scene,
         scene: &scene,
-        scene_hash: world.fingerprint(),
+        scene_hash: LazyCell::new(Box::new(|| world.fingerprint())),
         settings: &settings,
         backend: args.backend,
         intersect: intersect(args),
@@ -137,12 +138,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         warn(&format!("stopped with {} of {} samples per pixel", samples.spp, settings.spp));
     }
     pictures::write_or_rescue(&args.output, &origin, &rendering)?;
-    let stats = stats::stats(&origin, &rendering);
-    if let Some(target) = &args.stats {
-        write_text(target, &format!("{stats:#}\n"))?;
-    }
-    if args.json {
-        write_text(&Target::Stdout, &format!("{stats}\n"))?;
+    if args.stats.is_some() || args.json {
+        let stats = stats::stats(&origin, &rendering);
+        if let Some(target) = &args.stats {
+            write_text(target, &format!("{stats:#}\n"))?;
+        }
+        if args.json {
+            write_text(&Target::Stdout, &format!("{stats}\n"))?;
+        }
     }
     Ok(if stopped { ExitCode::from(signals::STOPPED) } else { ExitCode::SUCCESS })
 }

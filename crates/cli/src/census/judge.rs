@@ -43,24 +43,33 @@ impl Finding {
     }
 }
 
-/// Whether the disagreements of a row are limited; brute cannot disagree with itself.
-pub(crate) fn is_judged(row: &Row) -> bool {
-    match row.standard {
-        _ if row.backend == ORACLE => false,
+/// Whether disagreements count against a backend.
+pub(crate) fn counts_disagreements(standard: Standard, family: Family, needles: bool) -> bool {
+    match standard {
         Standard::Exact => true,
         // Which side of a needle a ray starts on is rounding's to decide as well.
-        Standard::Close => row.family.is_ordinary() && !(row.needles && row.family.leaves_a_surface()),
+        Standard::Close => family.is_ordinary() && !(needles && family.leaves_a_surface()),
         Standard::Reported => false,
     }
 }
 
-/// Whether the leaks of a row are limited.
-pub(crate) fn forbids_leaks(row: &Row) -> bool {
-    match row.standard {
-        Standard::Exact => row.must_hit > 0,
-        Standard::Close => row.family == Family::EdgeFromInside,
+/// Whether leaks count against a backend.
+pub(crate) fn counts_leaks(standard: Standard, family: Family) -> bool {
+    match standard {
+        Standard::Exact => true,
+        Standard::Close => family == Family::EdgeFromInside,
         Standard::Reported => false,
     }
+}
+
+/// Whether the disagreements of a row are limited; brute cannot disagree with itself.
+pub(crate) fn is_judged(row: &Row) -> bool {
+    row.backend != ORACLE && counts_disagreements(row.standard, row.family, row.needles)
+}
+
+/// Whether the leaks of a row are limited: those of rays that a surface must stop.
+pub(crate) fn forbids_leaks(row: &Row) -> bool {
+    counts_leaks(row.standard, row.family) && (row.standard != Standard::Exact || row.must_hit > 0)
 }
 
 /// How many of so many rays may disagree.

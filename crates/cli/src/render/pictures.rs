@@ -1,20 +1,21 @@
 //! Pictures and what they say of themselves: where a rendering goes.
 
 use super::stats::Times;
-use crate::output::{Target, write_all};
+use crate::output::{Target, extension, write_all};
 use anyhow::{Result, anyhow};
 use gonio_accel::Intersect;
 use gonio_tracer::image::{Metadata, Window, encode_exr, encode_png};
 use gonio_tracer::scene::Scene;
 use gonio_tracer::{Backend, RenderSettings, Rendering};
+use std::cell::LazyCell;
 use std::path::Path;
 
 /// Where a rendering comes from.
 pub(super) struct Origin<'a> {
     pub(super) scene_file: &'a Path,
     pub(super) scene: &'a Scene,
-    /// Of the world, see [`gonio_tracer::World::fingerprint`].
-    pub(super) scene_hash: String,
+    /// The fingerprint of the world: formed when something wants to say it, once.
+    pub(super) scene_hash: LazyCell<String, Box<dyn Fn() -> String + 'a>>,
     pub(super) settings: &'a RenderSettings,
     pub(super) backend: Backend,
     pub(super) intersect: Intersect,
@@ -61,7 +62,7 @@ fn metadata(origin: &Origin, rendering: &Rendering) -> Metadata {
     let aspect = f64::from(film.width) / f64::from(film.height);
     let other = vec![
         ("scene".to_owned(), origin.scene_file.display().to_string()),
-        ("scene_hash".to_owned(), origin.scene_hash.clone()),
+        ("scene_hash".to_owned(), origin.scene_hash.to_string()),
         ("intersect".to_owned(), origin.intersect.to_string()),
         ("plan".to_owned(), settings.plan.to_string()),
         ("russian_roulette".to_owned(), settings.russian_roulette.to_string()),
@@ -95,11 +96,6 @@ fn instruction_set() -> &'static str {
     } else {
         std::env::consts::ARCH
     }
-}
-
-/// The extension in lower case.
-pub(super) fn extension(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
 }
 
 /// Whether the name is that of a picture.

@@ -46,7 +46,7 @@ pub(super) fn stats(origin: &Origin, rendering: &Rendering) -> Value {
         "max_depth": settings.max_depth,
         "russian_roulette": settings.russian_roulette,
         "film_hash": stats.film_hash,
-        "scene_hash": origin.scene_hash,
+        "scene_hash": origin.scene_hash.as_str(),
         "plan": settings.plan.to_string(),
     })
 }
