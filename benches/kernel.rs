@@ -10,7 +10,7 @@
 
 use criterion::{Criterion, Throughput};
 use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{Conductor, Lambert, Mirror};
+use gonio_kernel::lobe::{Conductor, Dielectric, Lambert, Mirror, RoughDielectric};
 use gonio_kernel::microfacet::Ggx;
 use gonio_kernel::{F32x8, Lobe, Real, Rgb, Sample, Value, Vec3, for_each_lobe};
 use std::hint::black_box;
@@ -56,6 +56,17 @@ impl<R: Real> Example for Conductor<R> {
         let eta = Rgb::new(0.22, 0.96, 1.17).map(R::lit);
         let k = Rgb::new(3.68, 2.59, 2.46).map(R::lit);
         Self::new(Ggx { alpha_x: R::lit(0.3), alpha_y: R::lit(0.2) }, Fresnel::Conductor { eta, k })
+    }
+}
+
+impl<R: Real> Example for Dielectric<R> {
+    fn example() -> Self {
+        Self::new(R::lit(1.5))
+    }
+}
+impl<R: Real> Example for RoughDielectric<R> {
+    fn example() -> Self {
+        Self::new(Ggx { alpha_x: R::lit(0.3), alpha_y: R::lit(0.2) }, R::lit(1.5))
     }
 }
 

@@ -8,10 +8,20 @@
 //! every value is exactly zero and every sample fails with a finite unit `wi`. [`Unguarded`] is the same mixture without
 //! that guard, for instruments that must see what the formulas do by themselves.
 
-use crate::lobe::{Event, Lobe, Sample, Value};
+use crate::lobe::{Event, Lobe, Prepared, Sample, Value};
 use crate::real::{Mask, Real};
-use crate::surface::{MAX_LOBES, Surface};
+use crate::rgb::Rgb;
+use crate::surface::{MAX_LOBES, Surface, Weighted};
 use crate::vec3::Vec3;
+
+/// What a path carries from wi to wo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Transport {
+    /// Radiance, as seen by a camera: compressed by 1/η² where it crosses into another medium.
+    Radiance,
+    /// Importance, or particles of light: energy as it is.
+    Importance,
+}
 
 /// A surface prepared at wo, total over all bit patterns.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +35,12 @@ impl<'a, R: Real> Closure<'a, R> {
     #[inline(always)]
     pub fn new(surface: &'a Surface<R>, wo: Vec3<R>) -> Self {
         Self { mixture: Unguarded::new(surface, wo), valid: wo.is_direction() & surface.domain() }
+    }
+
+    /// The same, carrying something else than radiance.
+    #[inline(always)]
+    pub fn carrying(self, transport: Transport) -> Self {
+        Self { mixture: self.mixture.carrying(transport), ..self }
     }
 
     /// f·|cos_i| \[1/sr\] and density \[1/sr\] of the continuous lobes at wi.
@@ -62,6 +78,8 @@ pub struct Unguarded<'a, R: Real> {
     surface: &'a Surface<R>,
     wo: Vec3<R>,
     p: [R; MAX_LOBES],
+    prepared: [Prepared<R>; MAX_LOBES],
+    transport: Transport,
 }
 
 impl<'a, R: Real> Unguarded<'a, R> {
@@ -84,16 +102,36 @@ impl<'a, R: Real> Unguarded<'a, R> {
                 *p *= scale;
             }
         }
-        Self { surface, wo, p }
+        let mut prepared = [Prepared([R::ZERO; 4]); MAX_LOBES];
+        for (prepared, l) in prepared.iter_mut().zip(surface.lobes()) {
+            *prepared = l.lobe.prepare(wo);
+        }
+        Self { surface, wo, p, prepared, transport: Transport::Radiance }
+    }
+
+    /// The same, carrying something else.
+    #[inline(always)]
+    pub fn carrying(self, transport: Transport) -> Self {
+        Self { transport, ..self }
+    }
+
+    /// A lobe's value in the transport at hand, `through` where it is transmitted.
+    #[inline(always)]
+    fn carried(&self, l: &Weighted<R>, f_cos: Rgb<R>, through: R::Mask) -> Rgb<R> {
+        match self.transport {
+            Transport::Radiance => f_cos,
+            Transport::Importance => f_cos * R::select(through, l.lobe.compression(self.wo), R::ONE),
+        }
     }
 
     /// See [`Closure::eval`].
     #[inline(always)]
     pub fn eval(&self, wi: Vec3<R>) -> Value<R> {
         let mut sum = Value::zero();
-        for (l, &p) in self.surface.lobes().zip(&self.p) {
-            let value = l.lobe.eval(self.wo, wi);
-            sum.f_cos += value.f_cos * l.weight;
+        for ((l, &p), prepared) in self.surface.lobes().zip(&self.p).zip(&self.prepared) {
+            let value = l.lobe.eval_prepared(self.wo, prepared, wi);
+            let through = (self.wo.z * wi.z).lt(R::ZERO);
+            sum.f_cos += self.carried(l, value.f_cos, through) * l.weight;
             sum.pdf += p * value.pdf;
         }
         sum
@@ -104,20 +142,15 @@ impl<'a, R: Real> Unguarded<'a, R> {
     pub fn sample(&self, u: [R; 3]) -> Sample<R> {
         let mut chosen = Sample { wi: Vec3::unit_z(), event: Event::reflected(R::Mask::splat(true)) };
         let mut below = R::ZERO;
-        for ((l, &p), index) in self.surface.lobes().zip(&self.p).zip(0..) {
+        for (((l, &p), prepared), index) in self.surface.lobes().zip(&self.p).zip(&self.prepared).zip(0..) {
             let above = below + p;
             let mine = u[0].ge(below) & u[0].lt(above);
             if mine.any() {
                 // What is left of u₀ inside this lobe's share is uniform again; below 1 even after rounding.
                 let rest = ((u[0] - below) / p).max(R::ZERO).min(R::lit(0.999_999_94));
-                let s = l.lobe.sample(self.wo, [rest, u[1], u[2]]);
+                let s = l.lobe.sample_prepared(self.wo, prepared, [rest, u[1], u[2]]);
                 chosen.wi = Vec3::select(mine, s.wi, chosen.wi);
-                chosen.event = Event {
-                    lobe: R::int_select(mine, R::int(index), chosen.event.lobe),
-                    transmitted: (mine & s.event.transmitted) | (!mine & chosen.event.transmitted),
-                    discrete: (mine & s.event.discrete) | (!mine & chosen.event.discrete),
-                    failed: (mine & s.event.failed) | (!mine & chosen.event.failed),
-                };
+                chosen.event = Event::select(mine, Event { lobe: R::int(index), ..s.event }, chosen.event);
             }
             below = above;
         }
@@ -134,7 +167,8 @@ impl<'a, R: Real> Unguarded<'a, R> {
                 let value = l.lobe.discrete(self.wo, event);
                 // The strength is wR whatever p is: divided by the probability it weighs wR/p. Masked last, so that a lane
                 // with a p that is not finite leaves its neighbours alone.
-                sum.f_cos += (value.f_cos * l.weight).or_zero(mine);
+                let f_cos = self.carried(l, value.f_cos, event.transmitted);
+                sum.f_cos += (f_cos * l.weight).or_zero(mine);
                 sum.pdf += (p * value.pdf).or_zero(mine);
             }
         }
@@ -148,7 +182,6 @@ mod tests {
     use crate::fresnel::Fresnel;
     use crate::lobe::{Conductor, Lambert, Mirror};
     use crate::microfacet::Ggx;
-    use crate::rgb::Rgb;
     use crate::testing::{Random, close, special_values};
 
     fn matte() -> Lambert<f32> {

@@ -2,47 +2,108 @@
 //!
 //! Cosines are those between the direction and the (micro)normal, on wo's side. Results lie in [0, 1].
 
-use crate::real::Real;
+use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
 
-/// Reflectance of an interface between two dielectrics, eta = η_t/η_i > 0 seen from wo's side, cos_o in [0, 1].
-/// Born & Wolf, Principles of Optics, section 1.5: the mean of (r∥)² and (r⊥)². 1 beyond the critical angle.
+/// What an interface between two dielectrics does with unpolarised light.
+#[derive(Clone, Copy, Debug)]
+pub struct Interface<R> {
+    /// The reflected part, in [0, 1].
+    pub reflected: R,
+    /// The transmitted part, 1 − reflected, but exact where that cancels.
+    pub transmitted: R,
+}
+
+/// Cosine of the refracted direction by Snell's law, eta = η_t/η_i > 0 seen from wo's side; 0 in total reflection.
+#[inline(always)]
+pub fn refracted_cosine<R: Real>(cos_o: R, eta: R) -> R {
+    let sin2_o = (R::ONE - cos_o) * (R::ONE + cos_o);
+    (R::ONE - sin2_o / (eta * eta)).max(R::ZERO).sqrt()
+}
+
+/// An interface between two dielectrics met under the angles of these cosines, in [0, 1], which obey Snell's law for
+/// eta = η_t/η_i > 0; cos_t = 0 is total reflection.
+///
+/// Born & Wolf, Principles of Optics, section 1.5:
+/// $r_\parallel = (\eta c_o - c_t)/(\eta c_o + c_t)$, $r_\perp = (c_o - \eta c_t)/(c_o + \eta c_t)$, reflected
+/// $(r_\parallel^2 + r_\perp^2)/2$; and $1 - r^2 = 4 \eta c_o c_t/(\dots)^2$ for what is transmitted.
+#[inline(always)]
+pub fn interface<R: Real>(cos_o: R, cos_t: R, eta: R) -> Interface<R> {
+    let (along, across) = (eta.mul_add(cos_o, cos_t).recip(), eta.mul_add(cos_t, cos_o).recip());
+    let parallel = (eta * cos_o - cos_t) * along;
+    let perpendicular = (cos_o - eta * cos_t) * across;
+    let half = R::lit(0.5);
+    let through = R::lit(4.0) * eta * cos_o * cos_t;
+    // Both cosines 0 or nearly: an index matched at grazing. Everything is reflected.
+    let total = cos_t.le(R::ZERO) | !along.is_finite() | !across.is_finite();
+    Interface {
+        reflected: R::select(total, R::ONE, (parallel.sqr() + perpendicular.sqr()) * half).min(R::ONE),
+        transmitted: ((through * along * along + through * across * across) * half).min(R::ONE).or_zero(!total),
+    }
+}
+
+/// Reflectance of an interface between two dielectrics at cos_o in [0, 1], eta = η_t/η_i > 0 seen from wo's side. 1 beyond the
+/// critical angle.
 #[inline(always)]
 pub fn dielectric<R: Real>(cos_o: R, eta: R) -> R {
-    let sin2_o = (R::ONE - cos_o) * (R::ONE + cos_o);
-    let cos2_t = R::ONE - sin2_o / (eta * eta);
-    let total = cos2_t.le(R::ZERO);
-    let cos_t = cos2_t.max(R::ZERO).sqrt();
-    let parallel = (eta * cos_o - cos_t) / (eta * cos_o + cos_t);
-    let perpendicular = (cos_o - eta * cos_t) / (cos_o + eta * cos_t);
-    R::select(total, R::ONE, (parallel.sqr() + perpendicular.sqr()) * R::lit(0.5))
+    interface(cos_o, refracted_cosine(cos_o, eta), eta).reflected
 }
 
 /// Reflectance of a conductor of index η − ik seen from vacuum, for one wavelength or channel; cos_o in [0, 1], η > 0, k ≥ 0.
 ///
-/// With a² + b² = |√((η − ik)² − sin²θ)|² and a its real part (Born & Wolf, section 14.2, in the real form of
-/// Lazányi & Szirmay-Kalos 2005):
-/// R⊥ = (a² + b² − 2a cosθ + cos²θ)/(a² + b² + 2a cosθ + cos²θ), R∥ = R⊥ · (same with sin²θ tan²θ).
+/// With a − ib = √((η − ik)² − sin²θ) (Born & Wolf, section 14.2):
+/// R⊥ = ((a − cosθ)² + b²)/((a + cosθ)² + b²), R∥ = R⊥ · ((a cosθ − sin²θ)² + b²cos²θ)/((a cosθ + sin²θ)² + b²cos²θ).
 #[inline(always)]
 pub fn conductor<R: Real>(cos_o: R, eta: R, k: R) -> R {
+    let (n, d) = conductor_fraction(cos_o, eta, k);
+    (n / d).max(R::ZERO).min(R::ONE)
+}
+
+/// [`conductor`] of three channels, with one division for all.
+#[inline(always)]
+pub fn conductor_rgb<R: Real>(cos_o: R, eta: Rgb<R>, k: Rgb<R>) -> Rgb<R> {
+    let (r, g, b) = (
+        conductor_fraction(cos_o, eta.r, k.r),
+        conductor_fraction(cos_o, eta.g, k.g),
+        conductor_fraction(cos_o, eta.b, k.b),
+    );
+    let (rg, gb, rb) = (r.1 * g.1, g.1 * b.1, r.1 * b.1);
+    let product = rg * b.1;
+    let inverse = product.recip();
+    let mut reflectance = Rgb::new(r.0 * gb * inverse, g.0 * rb * inverse, b.0 * rg * inverse);
+    // Denominators span up to 60 decades near matched indices at grazing: where their product leaves `f32`, one by one.
+    let ordinary = product.gt(R::lit(1e-30)) & product.lt(R::lit(1e38)) & rg.gt(R::lit(1e-30)) & gb.gt(R::lit(1e-30));
+    let ordinary = ordinary & rb.gt(R::lit(1e-30));
+    if !ordinary.all() {
+        reflectance = Rgb::select(ordinary, reflectance, Rgb::new(r.0 / r.1, g.0 / g.1, b.0 / b.1));
+    }
+    reflectance.map(|x| x.max(R::ZERO).min(R::ONE))
+}
+
+/// Numerator and denominator of [`conductor`], the latter below 10¹³ for η and k up to 100.
+///
+/// With s² = (|a² + b²| + |t|)/2 and t = a² − b² = η² − k² − sin²θ, as = s² and bs = ηk where t ≥ 0, the other way round
+/// elsewhere: neither a nor b is formed by subtraction, and multiplied by s no division is left.
+/// (R⊥ + R∥)/2 = ((as − s cosθ)² + (bs)²) q / ((sp + 2as cosθ)(sq + 2as cosθ sin²θ)) with p = a² + b² + cos²θ and
+/// q = (a² + b²)cos²θ + sin⁴θ. Only as − s cosθ cancels, for η near 1 and small k, where nothing else could say how much
+/// is reflected.
+#[inline(always)]
+fn conductor_fraction<R: Real>(cos_o: R, eta: R, k: R) -> (R, R) {
     let cos2 = cos_o * cos_o;
     let sin2 = (R::ONE - cos_o) * (R::ONE + cos_o);
-    let eta2 = eta * eta;
-    let k2 = k * k;
-    let t0 = eta2 - k2 - sin2;
-    let a2b2 = t0.mul_add(t0, R::lit(4.0) * eta2 * k2).sqrt();
-    // a² = (|…| + t0)/2 cancels where t0 < 0; there a = ηk/s with s² = (|…| − t0)/2. Both are written a = n/w, and w is
-    // multiplied through, so that one division serves both polarisations and both cases.
-    let s = ((a2b2 + t0.abs()) * R::lit(0.5)).sqrt();
-    let inside = t0.lt(R::ZERO);
-    let n = R::select(inside, eta * k, s);
-    let w = R::select(inside, s, R::ONE);
-    let two_n_cos = R::lit(2.0) * n * cos_o;
-    let p = (a2b2 + cos2) * w;
-    let q = cos2.mul_add(a2b2, sin2 * sin2) * w;
-    // (R⊥ + R∥)/2 = R⊥ · ½(1 + (q − r)/(q + r)) = R⊥ · q/(q + r)
-    let reflectance = (p - two_n_cos) * q / ((p + two_n_cos) * two_n_cos.mul_add(sin2, q));
-    reflectance.max(R::ZERO).min(R::ONE)
+    let eta_k = eta * k;
+    let t = (eta - k).mul_add(eta + k, -sin2);
+    let a2b2 = t.mul_add(t, R::lit(4.0) * eta_k * eta_k).sqrt();
+    // At the critical angle of a lossless index s is 0, and so would be both parts of the fraction.
+    let s2 = ((a2b2 + t.abs()) * R::lit(0.5)).max(R::lit(1e-16));
+    let s = s2.sqrt();
+    let inside = t.lt(R::ZERO);
+    let (a_s, b_s) = (R::select(inside, eta_k, s2), R::select(inside, s2, eta_k));
+    let difference = (-s).mul_add(cos_o, a_s);
+    let twice = R::lit(2.0) * a_s * cos_o;
+    let q = cos2.mul_add(a2b2, sin2 * sin2);
+    let numerator = difference.mul_add(difference, b_s * b_s) * q;
+    (numerator, s.mul_add(a2b2 + cos2, twice) * twice.mul_add(sin2, s * q))
 }
 
 /// Schlick's approximation: f0 + (1 − f0)(1 − cosθ)⁵. Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering".
@@ -53,10 +114,24 @@ pub fn schlick<R: Real>(cos_o: R, f0: R) -> R {
     (R::ONE - f0).mul_add(m2 * m2 * m, f0)
 }
 
+/// Schlick's curve bent through `tint` times its own value at cosθ = 1/7 (82°):
+/// schlick(cosθ) − b cosθ (1 − cosθ)⁶ with b = schlick(1/7)(1 − tint)/((1/7)(6/7)⁶), not below 0.
+/// Kutz, Hašan & Edmondson 2021, "Novel aspects of the Adobe Standard Material", after Lazányi & Szirmay-Kalos 2005.
+#[inline(always)]
+pub fn f82<R: Real>(cos_o: R, f0: R, tint: R) -> R {
+    const M5: f64 = 7776.0 / 16807.0; // (6/7)⁵
+    let m = (R::ONE - cos_o).max(R::ZERO);
+    let m2 = m * m;
+    let m5 = m2 * m2 * m;
+    let rise = R::ONE - f0;
+    let b = rise.mul_add(R::lit(M5), f0) * (R::ONE - tint) * R::lit(49.0 / (6.0 * M5));
+    (b * cos_o * m).mul_add(-m5, rise.mul_add(m5, f0)).max(R::ZERO)
+}
+
 /// What a reflecting interface is made of, per channel.
 #[derive(Clone, Copy, Debug)]
 pub enum Fresnel<R> {
-    /// A conductor: index η in (0, 100], extinction k in [0, 100].
+    /// A conductor: index η in [1e-4, 100], extinction k in [0, 100].
     Conductor {
         /// Index of refraction.
         eta: Rgb<R>,
@@ -68,6 +143,18 @@ pub enum Fresnel<R> {
         /// Reflectance at normal incidence.
         f0: Rgb<R>,
     },
+    /// Schlick's curve with a dip at 82°, as metals have: f0 and tint in [0, 1]; see [`f82`].
+    F82 {
+        /// Reflectance at normal incidence.
+        f0: Rgb<R>,
+        /// What is left of Schlick's value at 82°.
+        tint: Rgb<R>,
+    },
+    /// The reflection of a dielectric, whose transmitted light is not of interest: eta = η_t/η_i in [0.01, 100].
+    Dielectric {
+        /// Index behind the interface over that before it.
+        eta: R,
+    },
 }
 
 impl<R: Real> Fresnel<R> {
@@ -75,10 +162,12 @@ impl<R: Real> Fresnel<R> {
     #[inline(always)]
     pub fn reflectance(&self, cos_o: R) -> Rgb<R> {
         match *self {
-            Self::Conductor { eta, k } => {
-                Rgb::new(conductor(cos_o, eta.r, k.r), conductor(cos_o, eta.g, k.g), conductor(cos_o, eta.b, k.b))
-            }
+            Self::Conductor { eta, k } => conductor_rgb(cos_o, eta, k),
             Self::Schlick { f0 } => f0.map(|f0| schlick(cos_o, f0)),
+            Self::F82 { f0, tint } => {
+                Rgb::new(f82(cos_o, f0.r, tint.r), f82(cos_o, f0.g, tint.g), f82(cos_o, f0.b, tint.b))
+            }
+            Self::Dielectric { eta } => Rgb::splat(dielectric(cos_o, eta)),
         }
     }
 
@@ -86,10 +175,18 @@ impl<R: Real> Fresnel<R> {
     #[inline(always)]
     pub fn domain(&self) -> R::Mask {
         match *self {
-            Self::Conductor { eta, k } => eta.within(1e-4, 100.0) & k.within(0.0, 100.0),
+            Self::Conductor { eta, k } => eta.within(0.999_999e-4, 100.0) & k.within(0.0, 100.0),
             Self::Schlick { f0 } => f0.within(0.0, 1.0),
+            Self::F82 { f0, tint } => f0.within(0.0, 1.0) & tint.within(0.0, 1.0),
+            Self::Dielectric { eta } => index_in_domain(eta),
         }
     }
+}
+
+/// Whether a relative index lies in [0.01, 100].
+#[inline(always)]
+pub(crate) fn index_in_domain<R: Real>(eta: R) -> R::Mask {
+    eta.ge(R::lit(0.999_999e-2)) & eta.le(R::lit(100.0))
 }
 
 #[cfg(test)]
@@ -174,6 +271,58 @@ mod tests {
                 let exact = complex_conductor(cos.into(), eta32.into(), k32.into());
                 assert!(close(conductor(cos, eta32, k32).into(), exact, 2e-6), "eta {eta}, k {k}, cos {cos} in f32");
             }
+        }
+    }
+
+    #[test]
+    fn three_channels_at_once_are_three_channels_one_by_one() {
+        let (eta, k) = (Rgb::new(0.2_f32, 1e-4, 100.0), Rgb::new(3.9, 0.0, 100.0));
+        for cos in [0.0_f32, 1e-30, 1e-8, 1e-4, 0.1, 0.5, 0.999, 1.0] {
+            let (all, each) = (conductor_rgb(cos, eta, k), |eta, k| f64::from(conductor(cos, eta, k)));
+            let one_by_one = [each(eta.r, k.r), each(eta.g, k.g), each(eta.b, k.b)];
+            for (a, b) in [all.r, all.g, all.b].into_iter().zip(one_by_one) {
+                assert!(close(a.into(), b, 1e-6), "cos {cos}: {all:?} and {one_by_one:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_index_near_vacuum_reflects_the_little_that_it_does() {
+        // R = ((η − 1)² + k²)/((η + 1)² + k²) straight on, in f64 of the same f32 numbers.
+        for (eta, k) in [(1.001_f32, 0.0_f32), (1.0, 1e-3), (0.9999, 1e-4), (1.01, 0.001)] {
+            let (n, x) = (f64::from(eta), f64::from(k));
+            let right = ((n - 1.0).powi(2) + x * x) / ((n + 1.0).powi(2) + x * x);
+            let got = f64::from(conductor(1.0_f32, eta, k));
+            // One ulp of η moves it by 2·1.2e-7/(η − 1).
+            let ulp = 2.0 * 1.2e-7 / ((n - 1.0).abs() + x);
+            assert!((got / right - 1.0).abs() < 8.0 * ulp + 1e-6, "eta {eta}, k {k}: {got} instead of {right}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_reflected_is_transmitted_at_every_angle() {
+        for eta in [0.5_f64, 0.99, 1.0, 1.33, 2.4] {
+            for step in 0..=1000 {
+                let cos = f64::from(step) / 1000.0;
+                let i = interface(cos, refracted_cosine(cos, eta), eta);
+                assert!(close(i.reflected + i.transmitted, 1.0, 1e-14), "eta {eta}, step {step}: {i:?}");
+            }
+        }
+        // At grazing, where 1 − R has no digit left in f32: T = 4c(η + 1/η)/√(1 − 1/η²)/2 to first order.
+        let (c, eta) = (1e-9_f32, 1.5_f64);
+        let cos_t = (1.0 - 1.0 / (eta * eta)).sqrt();
+        let first = 2.0 * f64::from(c) * (eta * cos_t / (eta * cos_t).powi(2) + eta / cos_t);
+        assert!(close(f64::from(interface(c, refracted_cosine(c, 1.5), 1.5_f32).transmitted) / first, 1.0, 1e-6));
+    }
+
+    #[test]
+    fn f82_passes_through_its_tint_at_82_degrees_and_is_schlick_without() {
+        let (f0, tint) = (0.7_f64, 0.4);
+        assert!(close(f82(1.0 / 7.0, f0, tint), tint * schlick(1.0 / 7.0, f0), 1e-15));
+        for step in 0..=100 {
+            let cos = f64::from(step) / 100.0;
+            assert!(close(f82(cos, f0, 1.0), schlick(cos, f0), 1e-15));
+            assert!((0.0..=1.0).contains(&f82(cos, 0.04, 0.0)));
         }
     }
 }

@@ -224,6 +224,7 @@ impl Real for F32x8 {
     type Mask = Mask8;
     type Int = U32x8;
     const PRECISION: Precision = Precision::Single;
+    const EPSILON: Self = Self::new([f32::EPSILON; 8]);
     const ZERO: Self = Self(f32x8::ZERO);
     const ONE: Self = Self(f32x8::ONE);
 

@@ -5,16 +5,26 @@
 //! [`Lobe::discrete`] the only author of weight and probability of the discrete part, and [`Lobe::sample`] only chooses.
 //! So value and density cannot drift apart, and a purely discrete lobe evaluates to 0, 0.
 //!
+//! **Transport.** Values are those of radiance: light that crosses into a denser medium is compressed into a narrower cone,
+//! so transmitted values carry 1/η² ([`Lobe::compression`]). Furnaces and albedos are about importance, which does not.
+//! For radiance f(wo, wi) η_i² = f(wi, wo) η_o², with η_o the index on wo's side (Veach 1997, section 5.2).
+//!
 //! Inside the domain (unit directions to 1e-3 in |w|², parameters in range) every result is finite and non-negative with
 //! no guard. Outside, a lobe may return anything but must not panic; [`crate::Closure`] turns that into exact zeros.
 
 mod conductor;
+mod dielectric;
 mod lambert;
 mod mirror;
+mod rough_dielectric;
+mod two_sided;
 
 pub use conductor::Conductor;
+pub use dielectric::Dielectric;
 pub use lambert::Lambert;
 pub use mirror::Mirror;
+pub use rough_dielectric::RoughDielectric;
+pub use two_sided::TwoSided;
 
 use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
@@ -51,13 +61,44 @@ pub struct Sample<R: Real> {
     pub event: Event<R>,
 }
 
+/// Up to four numbers of a lobe that depend on wo alone; what they mean is the lobe's own business.
+#[derive(Clone, Copy, Debug)]
+pub struct Prepared<R>(pub [R; 4]);
+
 /// A scattering model with its parameters, in the local frame.
+///
+/// Implement [`Lobe::eval`] and [`Lobe::sample`]; or, where something expensive depends on wo alone, [`Lobe::prepare`] with
+/// [`Lobe::eval_prepared`] and [`Lobe::sample_prepared`]. The one pair is made from the other.
 pub trait Lobe<R: Real> {
     /// f·|cos_i| and density of the continuous part: 0, 0 for a purely discrete lobe.
-    fn eval(&self, wo: Vec3<R>, wi: Vec3<R>) -> Value<R>;
+    #[inline(always)]
+    fn eval(&self, wo: Vec3<R>, wi: Vec3<R>) -> Value<R> {
+        self.eval_prepared(wo, &self.prepare(wo), wi)
+    }
 
     /// Chooses wi for wo. `u` are three uniform numbers in [0, 1); the first serves choices, the others positions.
-    fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R>;
+    #[inline(always)]
+    fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R> {
+        self.sample_prepared(wo, &self.prepare(wo), u)
+    }
+
+    /// What depends on wo alone: computed once where a closure is asked several times.
+    #[inline(always)]
+    fn prepare(&self, _wo: Vec3<R>) -> Prepared<R> {
+        Prepared([R::ZERO; 4])
+    }
+
+    /// [`Lobe::eval`] with what [`Lobe::prepare`] returned for the same wo.
+    #[inline(always)]
+    fn eval_prepared(&self, wo: Vec3<R>, _prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
+        self.eval(wo, wi)
+    }
+
+    /// [`Lobe::sample`] with what [`Lobe::prepare`] returned for the same wo.
+    #[inline(always)]
+    fn sample_prepared(&self, wo: Vec3<R>, _prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
+        self.sample(wo, u)
+    }
 
     /// Weight times probability, and probability, of a discrete event that [`Lobe::sample`] returned for this wo.
     fn discrete(&self, _wo: Vec3<R>, _event: &Event<R>) -> Value<R> {
@@ -69,6 +110,13 @@ pub trait Lobe<R: Real> {
 
     /// Whether the parameters lie in their domain.
     fn domain(&self) -> R::Mask;
+
+    /// η² seen from wo, η = η_t/η_i: what transmitted radiance is divided by. Multiplied by it, a transmitted value is that of
+    /// importance, which conserves energy. 1 for lobes that only reflect.
+    #[inline(always)]
+    fn compression(&self, _wo: Vec3<R>) -> R {
+        R::ONE
+    }
 }
 
 impl<R: Real> Value<R> {
@@ -97,6 +145,18 @@ impl<R: Real> Event<R> {
         let no = R::Mask::splat(false);
         Self { lobe: R::int(0), transmitted: no, discrete: no, failed }
     }
+
+    /// `yes` where `mask`, `no` elsewhere.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+        let choose = |yes: R::Mask, no: R::Mask| (mask & yes) | (!mask & no);
+        Self {
+            lobe: R::int_select(mask, yes.lobe, no.lobe),
+            transmitted: choose(yes.transmitted, no.transmitted),
+            discrete: choose(yes.discrete, no.discrete),
+            failed: choose(yes.failed, no.failed),
+        }
+    }
 }
 
 /// The table of models: calls `$macro!` with the name of every lobe. The enum that closures hold, the proof that the
@@ -104,7 +164,7 @@ impl<R: Real> Event<R> {
 #[macro_export]
 macro_rules! for_each_lobe {
     ($macro:ident) => {
-        $macro! { Lambert, Mirror, Conductor }
+        $macro! { Lambert, Mirror, Conductor, Dielectric, RoughDielectric }
     };
 }
 
@@ -127,6 +187,18 @@ macro_rules! any_lobe {
                 match self {$( Self::$model(lobe) => lobe.sample(wo, u), )*}
             }
             #[inline(always)]
+            fn prepare(&self, wo: Vec3<R>) -> Prepared<R> {
+                match self {$( Self::$model(lobe) => lobe.prepare(wo), )*}
+            }
+            #[inline(always)]
+            fn eval_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
+                match self {$( Self::$model(lobe) => lobe.eval_prepared(wo, prepared, wi), )*}
+            }
+            #[inline(always)]
+            fn sample_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
+                match self {$( Self::$model(lobe) => lobe.sample_prepared(wo, prepared, u), )*}
+            }
+            #[inline(always)]
             fn discrete(&self, wo: Vec3<R>, event: &Event<R>) -> Value<R> {
                 match self {$( Self::$model(lobe) => lobe.discrete(wo, event), )*}
             }
@@ -137,6 +209,10 @@ macro_rules! any_lobe {
             #[inline(always)]
             fn domain(&self) -> R::Mask {
                 match self {$( Self::$model(lobe) => lobe.domain(), )*}
+            }
+            #[inline(always)]
+            fn compression(&self, wo: Vec3<R>) -> R {
+                match self {$( Self::$model(lobe) => lobe.compression(wo), )*}
             }
         }
 

@@ -1,5 +1,122 @@
-//! Microfacet distributions: how the normals of a rough surface are spread, and which of them are seen.
+//! Microfacets: distributions of normals, and what masking, shadowing and densities they all share.
+//!
+//! A distribution has a density of normals D(m) and Smith's masking (Smith 1967; Heitz 2014). Its Λ enters as the length
+//!
+//! $$ s(w) = |\cos\theta|\,(1 + 2\Lambda(w)) $$
+//!
+//! which needs no division by a grazing cosine. (|cosθ| + s)/2 is the area of the microsurface that w sees, per area of the
+//! surface. With c = |cosθ|:
+//!
+//! - masking $G_1 = 2c/(c + s)$,
+//! - height-correlated $G_2/(4 c_o c_i) = 1/(2(c_i s_o + c_o s_i))$,
+//! - separable $G_1 G_1/(4 c_o c_i) = 1/((c_o + s_o)(c_i + s_i))$,
+//! - visible normals $D_o(m) = G_1(o)\,D(m)\,|o·m|/c_o = 2 D(m)\,|o·m|/(c_o + s_o)$.
 
 mod ggx;
 
 pub use ggx::Ggx;
+
+use crate::real::Real;
+use crate::vec3::Vec3;
+
+/// The smallest width of microfacets: below, even `f64` directions are coarser than the lobe, and the surface is a mirror.
+/// (In `f32` that is so below 1e-4: the lobe stays finite and its weights right, but its shape is that of the lattice.)
+pub const ALPHA_MIN: f64 = 1e-8;
+
+/// How masking of wo and shadowing of wi go together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Masking {
+    /// Points that wo sees high up are seen by wi too: 1/(1 + Λ(wo) + Λ(wi)).
+    HeightCorrelated,
+    /// G₁(wo) G₁(wi): darker, as if heights did not matter. What Walter et al. 2007 and Mitsuba use.
+    Separable,
+}
+
+/// A distribution of microfacet normals.
+#[derive(Clone, Copy, Debug)]
+pub enum Microfacets<R> {
+    /// See [`Ggx`].
+    Ggx(Ggx<R>),
+}
+
+impl<R> From<Ggx<R>> for Microfacets<R> {
+    fn from(ggx: Ggx<R>) -> Self {
+        Self::Ggx(ggx)
+    }
+}
+
+impl<R: Real> Microfacets<R> {
+    /// D of the normal along h (any length, h.z ≥ 0), with |h|² given \[1/sr\].
+    #[inline(always)]
+    pub fn d(&self, h: Vec3<R>, h_length2: R) -> R {
+        match self {
+            Self::Ggx(ggx) => ggx.d(h, h_length2),
+        }
+    }
+    /// s(w) = |cosθ|(1 + 2Λ(w)).
+    #[inline(always)]
+    pub fn smith_length(&self, w: Vec3<R>) -> R {
+        match self {
+            Self::Ggx(ggx) => ggx.smith_length(w),
+        }
+    }
+    /// How much of the normals that face away can reflect above the horizon, in [0, 1]; 1 where nothing better is known.
+    #[inline(always)]
+    pub fn bound(&self, wo: Vec3<R>) -> R {
+        match self {
+            Self::Ggx(ggx) => ggx.bound(wo),
+        }
+    }
+    /// A normal of any length, distributed as those visible from wo (above the surface), with s(wo) given; within `bound`.
+    #[inline(always)]
+    pub fn sample_visible(&self, wo: Vec3<R>, s_o: R, bound: R, u: [R; 2]) -> Vec3<R> {
+        match self {
+            Self::Ggx(ggx) => ggx.sample_visible(wo, s_o, bound, u),
+        }
+    }
+    /// Whether both widths lie in [1e-8, 1].
+    #[inline(always)]
+    pub fn domain(&self) -> R::Mask {
+        match self {
+            Self::Ggx(ggx) => ggx.domain(),
+        }
+    }
+}
+
+/// G₂/(4 cos_o), which is vis · cos_i; cosines positive, s(wo) and s(wi) given.
+#[inline(always)]
+pub fn vis_cos_i<R: Real>(masking: Masking, cos_o: R, s_o: R, cos_i: R, s_i: R) -> R {
+    match masking {
+        Masking::HeightCorrelated => {
+            // The ratio stays finite where the products of denormal cosines and widths would underflow.
+            let lift = R::lit(1e20);
+            let (cos_o, cos_i) = (cos_o * lift, cos_i * lift);
+            R::lit(0.5) * cos_i / cos_i.mul_add(s_o, cos_o * s_i)
+        }
+        Masking::Separable => cos_i / ((cos_o + s_o) * (cos_i + s_i)),
+    }
+}
+
+/// Density of the directions that mirror wo in a visible normal within `bound` \[1/sr\], D given:
+/// D/(2(k cos_o + s_o)), for k = 1 G₁(wo) D/(4 cos_o).
+#[inline(always)]
+pub fn pdf_visible_reflected<R: Real>(d: R, bound: R, cos_o: R, s_o: R) -> R {
+    R::lit(0.5) * d / bound.mul_add(cos_o, s_o)
+}
+
+/// wo mirrored in the normal along m (any length): 2m(wo·m)/|m|² − wo. Where m is too short to say, in z.
+#[inline(always)]
+pub fn reflect<R: Real>(wo: Vec3<R>, m: Vec3<R>) -> Vec3<R> {
+    let length2 = m.length2();
+    let ok = length2.gt(R::lit(1e-34)) & length2.is_finite();
+    let m = Vec3::select(ok, m, Vec3::unit_z());
+    let twice = R::lit(2.0) * wo.dot(m) / R::select(ok, length2, R::ONE);
+    m * twice - wo
+}
+
+/// Whether both widths lie in [1e-8, 1], 1e-8 as rounded to `f32` included.
+#[inline(always)]
+fn widths_in_domain<R: Real>(alpha_x: R, alpha_y: R) -> R::Mask {
+    let inside = |alpha: R| alpha.ge(R::lit(0.999_999 * ALPHA_MIN)) & alpha.le(R::ONE);
+    inside(alpha_x) & inside(alpha_y)
+}

@@ -46,6 +46,8 @@ pub trait Real:
 
     /// The precision of one lane.
     const PRECISION: Precision;
+    /// The distance from 1 to the next larger number.
+    const EPSILON: Self;
     /// 0
     const ZERO: Self;
     /// 1
@@ -144,6 +146,7 @@ macro_rules! scalar_real {
             type Mask = bool;
             type Int = u32;
             const PRECISION: Precision = Precision::$precision;
+            const EPSILON: $t = <$t>::EPSILON;
             const ZERO: $t = 0.0;
             const ONE: $t = 1.0;
 

@@ -163,7 +163,7 @@ fn plants() -> Vec<Plant> {
         },
         Plant {
             name: "failures passed off as samples",
-            row: "conductor 1x1 white",
+            row: "ground glass 1x1 2.4",
             eval: right,
             sample: Some(|p, wo, u| {
                 let draw = p.sample(wo, u);

@@ -136,10 +136,8 @@ fn around() -> [Task<'static>; 2] {
     }
     [
         planted("parameters outside the domain quietly clamped", "totality", |run| {
-            totality::measure_special(SCHLICK.parameters, clamped, run)
+            totality::measure_special(&SCHLICK, clamped, run)
         }),
-        planted("widths for which D overflows", "totality", |run| {
-            totality::measure_inside(SCHLICK.parameters, too_narrow, run)
-        }),
+        planted("widths for which D overflows", "totality", |run| totality::measure_inside(&SCHLICK, too_narrow, run)),
     ]
 }

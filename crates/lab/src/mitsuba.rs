@@ -13,6 +13,7 @@ use crate::oracle::{ggx_g1, ggx_g2};
 use crate::precision::sensitivity;
 use crate::probe::{Dir, Probe, SurfaceProbe};
 use crate::totality::Build;
+use gonio_kernel::microfacet::Ggx;
 use gonio_kernel::{Surface, Vec3, fresnel};
 
 const REFERENCE: &str = include_str!("../../../tests/reference/roughconductor.json");
@@ -29,8 +30,10 @@ pub(crate) fn measure(metal: Build<f64>, _run: &Run) -> Finding {
         let probe = SurfaceProbe::new(Surface::of(metal(&p)), None);
         let correlated = ggx_g2(p[0], p[1], wo, wi) / (ggx_g1(p[0], p[1], wo) * ggx_g1(p[0], p[1], wi));
         let right = [get("f_cos").iter().map(|f| f * correlated).collect(), get("pdf")].concat();
-        let moves = sensitivity(&probe, wo, wi);
-        for (i, (got, right)) in probe.eval(wo, wi).numbers().into_iter().zip(right).enumerate() {
+        let moves = sensitivity(&probe, &[], wo, wi);
+        let mut numbers = probe.eval(wo, wi).numbers();
+        numbers[3] *= unbounded(p[0], p[1], wo);
+        for (i, (got, right)) in numbers.into_iter().zip(right).enumerate() {
             let limit = 16.0 * (eps * got).max(moves[i]);
             relative = relative.max((got - right).abs() / got);
             finding.raise((got - right).abs() / limit, || format!("configuration {count}: {got} instead of {right}"));
@@ -42,6 +45,13 @@ pub(crate) fn measure(metal: Build<f64>, _run: &Run) -> Finding {
     }
     finding.note(format!("{count} configurations, largest relative difference {relative:.1e}"));
     finding
+}
+
+/// What turns the density within the bound of visible normals into that of all of them, which Mitsuba samples.
+fn unbounded(alpha_x: f64, alpha_y: f64, wo: Dir) -> f64 {
+    let ggx = Ggx { alpha_x, alpha_y };
+    let s = ggx.smith_length(wo);
+    (ggx.bound(wo) * wo.z + s) / (wo.z + s)
 }
 
 /// Fresnel's equations.

@@ -13,8 +13,8 @@ pub(crate) fn lambert(p: &[f64], _wo: Dir, wi: Dir) -> Worth {
     Worth { f_cos: [p[0], p[1], p[2]].map(|albedo| albedo / PI * wi.z), pdf: wi.z / PI }
 }
 
-/// The mirror has no density over directions.
-pub(crate) fn mirror(_p: &[f64], _wo: Dir, _wi: Dir) -> Worth {
+/// What is purely discrete has no density over directions.
+pub(crate) fn discrete(_p: &[f64], _wo: Dir, _wi: Dir) -> Worth {
     Worth { f_cos: [0.0; 3], pdf: 0.0 }
 }
 
@@ -28,8 +28,93 @@ pub(crate) fn schlick(p: &[f64], wo: Dir, wi: Dir) -> Worth {
     microfacet(p[0], p[1], wo, wi, |cos| [0, 1, 2].map(|c| p[2 + c] + (1.0 - p[2 + c]) * (1.0 - cos).powi(5)))
 }
 
+/// F82: alpha_x, alpha_y, three f0, three tints. Schlick's curve less a cosθ (1 − cosθ)⁶, with a such that the curve is
+/// tint times Schlick's at cosθ = 1/7.
+pub(crate) fn f82(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    microfacet(p[0], p[1], wo, wi, |cos| {
+        [0, 1, 2].map(|c| {
+            let schlick = |cos: f64| p[2 + c] + (1.0 - p[2 + c]) * (1.0 - cos).powi(5);
+            let bell = |cos: f64| cos * (1.0 - cos).powi(6);
+            let at = 1.0 / 7.0;
+            (schlick(cos) - (1.0 - p[5 + c]) * schlick(at) * bell(cos) / bell(at)).max(0.0)
+        })
+    })
+}
+
+/// Schlick's Fresnel with separable masking.
+pub(crate) fn separable(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    let worth = schlick(p, wo, wi);
+    let ratio = ggx_g1(p[0], p[1], wo) * ggx_g1(p[0], p[1], wi) / ggx_g2(p[0], p[1], wo, wi);
+    Worth { f_cos: worth.f_cos.map(|f| f * ratio), ..worth }
+}
+
+/// The reflection of a dielectric: alpha_x, alpha_y, index.
+pub(crate) fn coat(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    microfacet(p[0], p[1], wo, wi, |cos| [dielectric(cos, p[2]); 3])
+}
+
+/// A rough interface: alpha_x, alpha_y, index; as importance. Walter et al. 2007, equations 16, 20 and 21, read with i for
+/// wo and o for wi, and all visible normals as density.
+pub(crate) fn ground(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    let black = Worth { f_cos: [0.0; 3], pdf: 0.0 };
+    let (mut wo, mut wi, mut eta) = (wo, wi, p[2]);
+    if (eta - 1.0).abs() < 1e-3 {
+        return black; // a discrete event
+    }
+    if wo.z < 0.0 {
+        (wo.z, wi.z, eta) = (-wo.z, -wi.z, 1.0 / eta);
+    }
+    let dot = |a: Dir, m: [f64; 3]| a.x * m[0] + a.y * m[1] + a.z * m[2];
+    let g1_o = ggx_g1(p[0], p[1], wo);
+    if wi.z > 0.0 {
+        let all = microfacet_visible(p[0], p[1], wo, wi, |cos| [dielectric(cos, eta); 3], |_| 1.0);
+        let reflected = all.f_cos[0];
+        let mirror = microfacet_visible(p[0], p[1], wo, wi, |_| [1.0; 3], |cos| dielectric(cos, eta));
+        return Worth { f_cos: [reflected; 3], pdf: mirror.pdf };
+    }
+    // The normal of refraction, on wo's side.
+    let h = [wo.x + eta * wi.x, wo.y + eta * wi.y, wo.z + eta * wi.z];
+    let length = (h[0] * h[0] + h[1] * h[1] + h[2] * h[2]).sqrt();
+    let sign = if h[2] < 0.0 { -1.0 } else { 1.0 };
+    let m = h.map(|x| x * sign / length);
+    let (cos_om, cos_im) = (dot(wo, m), dot(wi, m));
+    if cos_om <= 0.0 || cos_im >= 0.0 {
+        return black;
+    }
+    // Fresnel's amplitudes of the transmitted wave, with both angles from the geometry.
+    let cos_t = -cos_im;
+    let across = 2.0 * cos_om / (cos_om + eta * cos_t);
+    let along = 2.0 * cos_om / (eta * cos_om + cos_t);
+    let transmitted = eta * cos_t / cos_om * 0.5 * (across * across + along * along);
+    let d = ggx_d(p[0], p[1], m);
+    let g = g1_o * ggx_g1(p[0], p[1], wi);
+    let jacobian = eta * eta * cos_im.abs() / (cos_om + eta * cos_im).powi(2);
+    let f = transmitted * d * g * cos_om * jacobian / (wo.z * wi.z.abs());
+    let pdf = transmitted * g1_o * d * cos_om / wo.z * jacobian;
+    Worth { f_cos: [f * wi.z.abs(); 3], pdf }
+}
+
 /// Cook–Torrance with GGX: f = F D G₂ / (4 cosθ_o cosθ_i), visible normals as density.
 fn microfacet(alpha_x: f64, alpha_y: f64, wo: Dir, wi: Dir, fresnel: impl Fn(f64) -> [f64; 3]) -> Worth {
+    let worth = microfacet_visible(alpha_x, alpha_y, wo, wi, fresnel, |_| 1.0);
+    // Reflectors sample normals above a bound (Eto & Tokuyoshi 2023, equations 5 and 6): D/(2(k cosθ + t)) where all
+    // normals would give D/(2(cosθ + t)).
+    let t = (wo.z * wo.z + (alpha_x * wo.x).powi(2) + (alpha_y * wo.y).powi(2)).sqrt();
+    let a = alpha_x.min(alpha_y);
+    let s = 1.0 + (1.0 - wo.z * wo.z).max(0.0).sqrt();
+    let k = (1.0 - a * a) * s * s / (s * s + a * a * wo.z * wo.z);
+    Worth { pdf: worth.pdf * (wo.z + t) / (k * wo.z + t), ..worth }
+}
+
+/// The same with all visible normals, each with the given probability of being used.
+fn microfacet_visible(
+    alpha_x: f64,
+    alpha_y: f64,
+    wo: Dir,
+    wi: Dir,
+    fresnel: impl Fn(f64) -> [f64; 3],
+    used: impl Fn(f64) -> f64,
+) -> Worth {
     let sum = [wo.x + wi.x, wo.y + wi.y, wo.z + wi.z];
     let length = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();
     let m = sum.map(|x| x / length);
@@ -39,7 +124,7 @@ fn microfacet(alpha_x: f64, alpha_y: f64, wo: Dir, wi: Dir, fresnel: impl Fn(f64
     let g2 = 1.0 / (1.0 + lambda_o + lambda_i);
     let g1 = 1.0 / (1.0 + lambda_o);
     // D_visible(m) = G₁ D (wo·m)/cosθ_o, and dω_m/dω_i = 1/(4 wo·m).
-    let pdf = g1 * d * cos_om / wo.z / (4.0 * cos_om);
+    let pdf = used(cos_om) * g1 * d * cos_om / wo.z / (4.0 * cos_om);
     Worth { f_cos: fresnel(cos_om).map(|f| f * d * g2 / (4.0 * wo.z * wi.z) * wi.z), pdf }
 }
 

@@ -6,7 +6,7 @@
 //! visibility and cosine; 14 times in Fresnel's quotient. (Seen: 8.5 at most in 10⁷ pairs.) A formula that subtracts what
 //! it should not is wrong by hundreds.
 
-use crate::directions::{any_above, partner, show};
+use crate::directions::show;
 use crate::finding::{Finding, Run};
 use crate::probe::{Dir, Probe, demote};
 use crate::subject::View;
@@ -19,13 +19,9 @@ pub(crate) fn measure(single: View, run: &Run) -> Finding {
     let eps = f64::from(f32::EPSILON);
     let mut relative = 0.0_f64;
     for _ in 0..run.by_effort(3_000, 30_000, 300_000) {
-        let wo = single.probe.snap(any_above(&mut random));
-        let wi = single.probe.snap(partner(&mut random, wo));
-        if wo.z <= 0.0 || wi.z <= 0.0 {
-            continue;
-        }
+        let Some((wo, wi)) = single.pair(&mut random) else { continue };
         let (rough, exact) = (single.probe.eval(wo, wi).numbers(), single.reference.eval(wo, wi).numbers());
-        let moves = sensitivity(single.reference, wo, wi);
+        let moves = sensitivity(single.reference, single.nudged, wo, wi);
         for i in 0..4 {
             // Where f32 itself runs out of normal numbers, its rounding is absolute.
             let unit = (eps * exact[i]).max(moves[i]).max(f64::from(f32::MIN_POSITIVE));
@@ -43,15 +39,18 @@ pub(crate) fn measure(single: View, run: &Run) -> Finding {
     finding
 }
 
-/// The largest change of each of the four numbers when one component of wo or wi moves by one ulp of `f32`, either way.
-pub(crate) fn sensitivity(probe: &dyn Probe, wo: Dir, wi: Dir) -> [f64; 4] {
+/// The largest change of each of the four numbers when one component of wo or wi, or one parameter (as in `nudged`), moves by
+/// one ulp of `f32`, either way.
+pub(crate) fn sensitivity<'a>(probe: &dyn Probe, nudged: &[Box<dyn Probe + 'a>], wo: Dir, wi: Dir) -> [f64; 4] {
     let here = probe.eval(wo, wi).numbers();
     let mut largest = [0.0_f64; 4];
-    let mut compare = |wo: Dir, wi: Dir| {
-        for (largest, (a, b)) in largest.iter_mut().zip(here.iter().zip(probe.eval(wo, wi).numbers())) {
+    let mut compare_with = |there: [f64; 4]| {
+        for (largest, (a, b)) in largest.iter_mut().zip(here.iter().zip(there)) {
             *largest = largest.max((a - b).abs());
         }
     };
+    nudged.iter().for_each(|probe| compare_with(probe.eval(wo, wi).numbers()));
+    let mut compare = |wo: Dir, wi: Dir| compare_with(probe.eval(wo, wi).numbers());
     for axis in 0..3 {
         for up in [false, true] {
             compare(moved(wo, axis, up), wi);
@@ -61,11 +60,11 @@ pub(crate) fn sensitivity(probe: &dyn Probe, wo: Dir, wi: Dir) -> [f64; 4] {
     largest
 }
 
-/// w with one component moved to the next `f32`. The cosine stays positive.
+/// w with one component moved to the next `f32`. The cosine keeps its sign.
 fn moved(w: Dir, axis: usize, up: bool) -> Dir {
     let mut c: [f32; 3] = demote(w).into();
     let next = if up { c[axis].next_up() } else { c[axis].next_down() };
-    if axis < 2 || next > 0.0 {
+    if axis < 2 || next * c[2] > 0.0 {
         c[axis] = next;
     }
     Vec3::from(c.map(f64::from))

@@ -3,7 +3,10 @@
 //! Instruments are written once against this trait and compiled once. A direction or random number handed to a probe of
 //! `f32` arithmetic must lie on its lattice: [`Probe::snap`] puts it there, so that nothing is rounded unseen.
 
-use gonio_kernel::{Event, F32x8, Lobe, Mask8, Precision, Real, Rgb, Sample, Surface, Value, Vec3, closure::Unguarded};
+use gonio_kernel::{
+    Event, F32x8, Lobe, Mask8, Precision, Real, Rgb, Sample, Surface, Value, Vec3,
+    closure::{Transport, Unguarded},
+};
 
 /// A direction, local.
 pub(crate) type Dir = Vec3<f64>;
@@ -66,6 +69,10 @@ pub(crate) trait Probe: Sync {
     }
     /// Whether the arithmetic inside is `f32`.
     fn single(&self) -> bool;
+    /// η² seen from wo, which transmitted radiance would be divided by.
+    fn compression(&self, _wo: Dir) -> f64 {
+        1.0
+    }
     /// The largest weight that sampling may give at wo: 1 unless a mixture must trade between its lobes. Infinite if
     /// nothing is promised.
     fn weight_bound(&self, _wo: Dir) -> f64 {
@@ -116,12 +123,12 @@ fn worth<R: Scalar>(value: Value<R>) -> Worth {
     let Rgb { r, g, b } = value.f_cos;
     Worth { f_cos: [r.widen(), g.widen(), b.widen()], pdf: value.pdf.widen() }
 }
-fn draw<R: Scalar>(sample: Sample<R>, discrete: impl FnOnce(&Event<R>) -> Value<R>) -> Draw {
+fn draw<R: Scalar>(sample: Sample<R>, discrete: impl FnOnce(&Event<R>) -> Worth) -> Draw {
     let Sample { wi, event } = sample;
     let kind = if event.failed {
         Kind::Failed
     } else if event.discrete {
-        Kind::Discrete(worth(discrete(&event)), (event.lobe, event.transmitted))
+        Kind::Discrete(discrete(&event), (event.lobe, event.transmitted))
     } else {
         Kind::Continuous
     };
@@ -139,15 +146,24 @@ impl<'a, R: Scalar, L: Lobe<R>> LobeProbe<'a, R, L> {
     pub(crate) fn new(lobe: &'a L) -> Self {
         Self { lobe, precision: std::marker::PhantomData }
     }
+    fn as_importance(&self, wo: Dir, through: bool, value: Value<R>) -> Worth {
+        let factor = if through { self.lobe.compression(narrow(wo)) } else { R::ONE };
+        worth(Value { f_cos: value.f_cos * factor, ..value })
+    }
 }
 
 impl<R: Scalar, L: Lobe<R> + Sync> Probe for LobeProbe<'_, R, L> {
     fn eval(&self, wo: Dir, wi: Dir) -> Worth {
-        worth(self.lobe.eval(narrow(wo), narrow(wi)))
+        self.as_importance(wo, wo.z * wi.z < 0.0, self.lobe.eval(narrow(wo), narrow(wi)))
     }
     fn sample(&self, wo: Dir, u: [f64; 3]) -> Draw {
-        let wo = narrow(wo);
-        draw(self.lobe.sample(wo, u.map(R::lit)), |event| self.lobe.discrete(wo, event))
+        let o = narrow(wo);
+        let sample = self.lobe.sample(o, u.map(R::lit));
+        let through = sample.event.transmitted;
+        draw(sample, |event| self.as_importance(wo, through, self.lobe.discrete(o, event)))
+    }
+    fn compression(&self, wo: Dir) -> f64 {
+        self.lobe.compression(narrow(wo)).widen()
     }
     fn single(&self) -> bool {
         R::PRECISION == Precision::Single
@@ -161,30 +177,38 @@ impl<R: Scalar, L: Lobe<R> + Sync> Probe for LobeProbe<'_, R, L> {
 pub(crate) struct SurfaceProbe<R> {
     surface: Surface<R>,
     lanes: Option<Surface<F32x8>>,
+    weight: f64,
 }
 
 impl<R: Scalar> SurfaceProbe<R> {
     /// The surface, measurable. With its eight-lane twin, batches are sampled in lanes (whose equality is tested apart).
     pub(crate) fn new(surface: Surface<R>, lanes: Option<Surface<F32x8>>) -> Self {
-        Self { surface, lanes }
+        Self { surface, lanes, weight: 1.0 }
+    }
+    /// The same, of lobes that weigh up to `weight` by themselves.
+    pub(crate) fn weighing(self, weight: f64) -> Self {
+        Self { weight, ..self }
+    }
+    fn at(&self, wo: Dir) -> Unguarded<'_, R> {
+        Unguarded::new(&self.surface, narrow(wo)).carrying(Transport::Importance)
     }
 }
 
 impl<R: Scalar> Probe for SurfaceProbe<R> {
     fn eval(&self, wo: Dir, wi: Dir) -> Worth {
-        worth(Unguarded::new(&self.surface, narrow(wo)).eval(narrow(wi)))
+        worth(self.at(wo).eval(narrow(wi)))
     }
     fn sample(&self, wo: Dir, u: [f64; 3]) -> Draw {
-        let closure = Unguarded::new(&self.surface, narrow(wo));
-        draw(closure.sample(u.map(R::lit)), |event| closure.discrete(event))
+        let closure = self.at(wo);
+        draw(closure.sample(u.map(R::lit)), |event| worth(closure.discrete(event)))
     }
     fn sample_all(&self, wo: Dir, u: &[[f64; 3]], out: &mut Vec<Draw>) {
         let Some(lanes) = &self.lanes else {
-            let closure = Unguarded::new(&self.surface, narrow(wo));
-            out.extend(u.iter().map(|u| draw(closure.sample(u.map(R::lit)), |event| closure.discrete(event))));
+            let closure = self.at(wo);
+            out.extend(u.iter().map(|u| draw(closure.sample(u.map(R::lit)), |event| worth(closure.discrete(event)))));
             return;
         };
-        let closure = Unguarded::new(lanes, demote(wo).splat_lanes());
+        let closure = Unguarded::new(lanes, demote(wo).splat_lanes()).carrying(Transport::Importance);
         for eight in u.chunks(8) {
             let number = |i: usize| F32x8::new(std::array::from_fn(|l| eight.get(l).map_or(0.0, |u| u[i] as f32)));
             let Sample { wi, event } = closure.sample([number(0), number(1), number(2)]);
@@ -207,21 +231,26 @@ impl<R: Scalar> Probe for SurfaceProbe<R> {
     fn single(&self) -> bool {
         R::PRECISION == Precision::Single
     }
+    fn compression(&self, wo: Dir) -> f64 {
+        // At most one lobe of a row transmits.
+        self.surface.lobes().map(|l| l.lobe.compression(narrow(wo)).widen()).fold(1.0, |product, one| product * one)
+    }
     fn weight_bound(&self, wo: Dir) -> f64 {
-        // Lobe i is chosen with pᵢ = wᵢYᵢ/Σwⱼ Yⱼ, and no lobe weighs more than 1 by itself: Σwᵢfᵢ/Σpᵢpdfᵢ ≤ max wᵢ/pᵢ.
+        // Lobe i is chosen with pᵢ = wᵢYᵢ/Σwⱼ Yⱼ, and none weighs more than B by itself: Σwᵢfᵢ/Σpᵢpdfᵢ ≤ B max wᵢ/pᵢ.
         let estimates = self.surface.lobes().filter(|l| l.weight.widen() > 0.0).map(|l| {
             let y = Lobe::albedo_estimate(&l.lobe, narrow::<R>(wo)).luminance().widen();
             (l.weight.widen(), y)
         });
         let bright: Vec<(f64, f64)> = estimates.filter(|(_, y)| *y > 0.0).collect();
-        match bright[..] {
-            [] => 1.0,
-            [(weight, _)] => weight,
-            _ => {
-                let sum: f64 = bright.iter().map(|(w, y)| w * y).sum();
-                sum / bright.iter().fold(f64::INFINITY, |least, (_, y)| least.min(*y))
+        self.weight
+            * match bright[..] {
+                [] => 1.0,
+                [(weight, _)] => weight,
+                _ => {
+                    let sum: f64 = bright.iter().map(|(w, y)| w * y).sum();
+                    sum / bright.iter().fold(f64::INFINITY, |least, (_, y)| least.min(*y))
+                }
             }
-        }
     }
 }
 

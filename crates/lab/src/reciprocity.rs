@@ -1,4 +1,5 @@
-//! Reciprocity: f(wo, wi) = f(wi, wo) for reflection (Helmholtz).
+//! Reciprocity: f(wo, wi) = f(wi, wo) for reflection (Helmholtz); as importance, f(wo, wi) η_o² = f(wi, wo) η_i² through an
+//! interface (Veach 1997, section 5.2).
 //!
 //! **Limit.** The kernel's lobes are written so that exchanging the directions exchanges the operands of commutative
 //! operations only (h = wo + wi, one sum in the visibility term). What differs is the rounding of cos_i s(wo) + cos_o s(wi)
@@ -6,7 +7,7 @@
 //! either side and as many again for each lobe of a mixture, so 16 eps bounds it with room. Of a stranger's lobe no such
 //! thing is known: it gets 8 times the change that moving one input by one unit in the last place makes, or 8 eps.
 
-use crate::directions::{any_above, partner, show};
+use crate::directions::show;
 use crate::finding::{Finding, Run};
 use crate::precision::sensitivity;
 use crate::subject::View;
@@ -18,22 +19,24 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
     let mut finding = Finding::at_most(1.0, "max |f(wo,wi) − f(wi,wo)| in units of its rounding limit ≤");
     let mut residual = 0.0_f64;
     for _ in 0..run.by_effort(5_000, 50_000, 1_000_000) {
-        let wo = view.probe.snap(any_above(&mut random));
-        let wi = view.probe.snap(partner(&mut random, wo));
-        if wo.z <= 0.0 || wi.z <= 0.0 {
-            continue;
-        }
-        let (there, back) = (view.probe.eval(wo, wi).f_cos, view.probe.eval(wi, wo).f_cos);
-        let moves = if view.claims.symmetric { [0.0; 4] } else { sensitivity(view.probe, wo, wi) };
+        let Some((wo, wi)) = view.pair(&mut random) else { continue };
+        // Importance on its way through: f(wo, wi) η_o² = f(wi, wo) η_i².
+        let through = if wo.z * wi.z < 0.0 { view.probe.compression(wo) } else { 1.0 };
+        let there = view.probe.eval(wo, wi).f_cos;
+        let back = view.probe.eval(wi, wo).f_cos.map(|f| f * through);
+        let moves = if view.claims.symmetric { [0.0; 4] } else { sensitivity(view.reference, view.nudged, wo, wi) };
         for c in 0..3 {
             // Denormal f32 results carry few bits: nothing to compare below.
             let floor = if view.probe.single() { 1e-30 } else { 1e-280 };
-            let (a, b) = (there[c] / wi.z, back[c] / wo.z);
+            let (a, b) = (there[c] / wi.z.abs(), back[c] / wo.z.abs());
             if there[c].max(back[c]) < floor {
                 continue;
             }
-            let limit =
-                if view.claims.symmetric { 16.0 * eps * a.max(b) } else { 8.0 * (eps * a.max(b)).max(moves[c] / wi.z) };
+            let limit = if view.claims.symmetric {
+                16.0 * eps * a.max(b)
+            } else {
+                8.0 * (eps * a.max(b)).max(moves[c] / wi.z.abs())
+            };
             residual = residual.max((a - b).abs() / a.max(b));
             finding.raise((a - b).abs() / limit, || {
                 format!("{a:.9e} against {b:.9e}, channel {c}, wo {}, wi {}", show(wo), show(wi))

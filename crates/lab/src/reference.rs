@@ -3,7 +3,7 @@
 use crate::directions::{any_above, partner, show};
 use crate::finding::{Finding, Run};
 use crate::oracle;
-use crate::probe::{Dir, Probe, SurfaceProbe, Worth};
+use crate::probe::{Dir, Kind, Probe, SurfaceProbe, Worth};
 use crate::totality::parameter;
 use crate::zoo::Species;
 use gonio_kernel::units::{Flux, LUMINOUS_EFFICACY};
@@ -28,10 +28,20 @@ pub(crate) fn measure(species: &Species, model: Model, run: &Run) -> Finding {
     let mut finding = Finding::at_most(LIMIT, "max |kernel − oracle| / oracle ≤");
     for _ in 0..run.by_effort(30_000, 300_000, 3_000_000) {
         let p: Vec<f64> = species.parameters.iter().map(|p| f64::from(parameter(p, &mut random))).collect();
-        let wo = any_above(&mut random);
-        let wi = partner(&mut random, wo);
+        let mut wo = any_above(&mut random);
+        let mut wi = partner(&mut random, wo);
+        if species.nature.transmits {
+            // Any sides; and refraction is narrow, so that what was sampled is asked for as often as not.
+            let side = |w: Dir, bits: u64| if bits.is_multiple_of(2) { Dir::new(w.x, w.y, -w.z) } else { w };
+            (wo, wi) = (side(wo, random.bits()), side(wi, random.bits()));
+            let draw =
+                SurfaceProbe::new(Surface::of((species.double)(&p)), None).sample(wo, random.sampler_input(false));
+            if draw.kind == Kind::Continuous && random.bits().is_multiple_of(2) {
+                wi = draw.wi;
+            }
+        }
         // The oracle needs room: tan θ of a grazing direction and 1 − cos² of it lose digits.
-        if wo.z < 1e-4 || wi.z < 1e-4 {
+        if wo.z.abs() < 1e-4 || wi.z.abs() < 1e-4 {
             continue;
         }
         let (got, right) = (model(species, &p, wo, wi), (species.oracle)(&p, wo, wi));

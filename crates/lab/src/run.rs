@@ -163,10 +163,10 @@ fn kernel_tasks() -> Vec<Task<'static>> {
             lanes::measure_mixture(one, other, run)
         }));
         tasks.push(Task::new("totality", format!("{} inside its domain", one.name), 0, |run| {
-            totality::measure_inside(one.parameters, one.lanes, run)
+            totality::measure_inside(one, one.lanes, run)
         }));
         tasks.push(Task::new("totality", format!("{} at special numbers", one.name), 0, |run| {
-            totality::measure_special(one.parameters, one.single, run)
+            totality::measure_special(one, one.single, run)
         }));
         tasks.push(Task::new("reference", one.name, 0, |run| reference::measure(one, reference::kernel, run)));
     }

@@ -1,8 +1,8 @@
 //! `Subject`: a model with its probes, with what is claimed of it, and with its integrals at the four views.
 
 use crate::cells::Cells;
-use crate::directions::VIEWS;
-use crate::probe::{Dir, LobeProbe, Probe, SurfaceProbe, demote, promote};
+use crate::directions::{VIEWS, any_above, partner};
+use crate::probe::{Dir, Kind, LobeProbe, Probe, SurfaceProbe, demote, promote};
 use crate::quadrature::Integral;
 use crate::random::{Random, direction, seed_for};
 use crate::zoo::Row;
@@ -23,8 +23,12 @@ pub(crate) struct Claims {
     pub(crate) one_event: bool,
     /// Purely discrete.
     pub(crate) discrete: bool,
+    /// Scatters to the other side, and from there.
+    pub(crate) transmits: bool,
     /// No lobe has a positive weight: nothing is ever sampled.
     pub(crate) empty: bool,
+    /// The least width of a lobe, if it is narrow.
+    pub(crate) width: Option<f64>,
 }
 
 /// A model, measurable.
@@ -35,6 +39,8 @@ pub(crate) struct Subject<'a> {
     pub(crate) single: Option<Box<dyn Probe + 'a>>,
     /// In `f64`.
     pub(crate) double: Option<Box<dyn Probe + 'a>>,
+    /// In `f64`, each with one parameter moved to the next `f32`.
+    pub(crate) nudged: Vec<Box<dyn Probe + 'a>>,
     /// What is claimed of it.
     pub(crate) claims: Claims,
     /// Cells and integrals at each view: made by the first instrument that asks, the same for all of them.
@@ -61,23 +67,31 @@ impl<'a> Subject<'a> {
     pub(crate) fn of_probe(name: &str, probe: impl Probe + 'a, claims: Claims) -> Self {
         let probe: Box<dyn Probe + 'a> = Box::new(probe);
         let (single, double) = if probe.single() { (Some(probe), None) } else { (None, Some(probe)) };
-        Self { name: name.to_owned(), single, double, claims, prepared: Default::default() }
+        Self { name: name.to_owned(), single, double, nudged: Vec::new(), claims, prepared: Default::default() }
     }
 
     /// A row of the zoo.
     pub(crate) fn of_row(row: &Row) -> Self {
         let claims = Claims {
             albedo: row.albedo,
-            one_to_one: row.only().is_some() && !row.is_discrete(),
-            symmetric: true,
-            one_event: row.only().is_some() && row.is_discrete(),
+            one_to_one: row.only().is_some_and(|(species, _)| species.nature.one_to_one),
+            symmetric: row.lobes.iter().all(|(_, species, _)| species.nature.symmetric),
+            transmits: row.lobes.iter().any(|(_, species, _)| species.nature.transmits),
+            one_event: row.only().is_some_and(|(species, _)| species.nature.discrete && !species.nature.transmits),
             discrete: row.is_discrete(),
+            width: Some(f64::from(row.least_width())),
             empty: row.lobes.iter().all(|(weight, ..)| *weight == 0.0),
         };
+        let weight = row.lobes.iter().fold(0.0, |most, (_, species, _)| species.nature.weight.max(most));
+        let probe = |row: &Row| SurfaceProbe::new(row.double(), None).weighing(weight);
         Self {
             name: row.name.clone(),
-            single: Some(Box::new(SurfaceProbe::new(row.single(), Some(row.lanes())))),
-            double: Some(Box::new(SurfaceProbe::new(row.double(), None))),
+            // Narrower than the lattice of f32 directions a lobe has no shape there.
+            single: (row.least_width() >= 1e-4).then(|| -> Box<dyn Probe> {
+                Box::new(SurfaceProbe::new(row.single(), Some(row.lanes())).weighing(weight))
+            }),
+            double: Some(Box::new(probe(row))),
+            nudged: row.nudged().iter().map(|row| -> Box<dyn Probe> { Box::new(probe(row)) }).collect(),
             claims,
             prepared: Default::default(),
         }
@@ -93,6 +107,7 @@ impl<'a> Subject<'a> {
         [&self.single, &self.double].into_iter().flatten().map(|probe| View {
             probe: probe.as_ref(),
             reference: self.double.as_deref().unwrap_or(probe.as_ref()),
+            nudged: &self.nudged,
             claims: self.claims,
             has_single: self.single.is_some(),
             prepared: &self.prepared,
@@ -107,6 +122,8 @@ pub(crate) struct View<'a> {
     pub(crate) probe: &'a dyn Probe,
     /// What it is compared with: the `f64` form where there is one, else the probe itself.
     pub(crate) reference: &'a dyn Probe,
+    /// The reference with one parameter moved by one unit in the last place of `f32`.
+    pub(crate) nudged: &'a [Box<dyn Probe + 'a>],
     /// What is claimed of it.
     pub(crate) claims: Claims,
     /// Whether the subject has a form in `f32`.
@@ -117,15 +134,19 @@ pub(crate) struct View<'a> {
 impl<'a> View<'a> {
     /// The four views, with cells and integrals of the reference.
     pub(crate) fn prepared(&self) -> impl Iterator<Item = &'a Prepared> {
-        let reference = self.reference;
-        VIEWS.iter().zip(self.prepared).map(move |(&(cos, phi), slot)| {
+        let (reference, transmits, has_single) = (self.reference, self.claims.transmits, self.has_single);
+        let rounded = move |w: Dir| if has_single { promote(demote(w)) } else { w };
+        VIEWS.iter().zip(self.prepared).enumerate().map(move |(index, (&(cos, phi), slot))| {
             slot.get_or_init(|| {
                 // Exact in f32, and unit beyond it: z is chosen after x and y were rounded. At 89° an error of 6e-8 in |wo|
                 // tilts the half vector by 2 % of a lobe of alpha 1e-4, which is a true difference of sample and density.
-                let w = promote(demote(direction(cos, phi)));
+                let w = rounded(direction(cos, phi));
                 let z = (1.0 - w.x * w.x - w.y * w.y).max(0.0).sqrt();
-                let wo = promote(demote(Vec3::new(w.x, w.y, z)));
-                let name = format!("wo at {:.0}°, azimuth {:.0}°", cos.acos().to_degrees(), phi.to_degrees());
+                // What transmits is seen from below at every other view.
+                let below = transmits && index % 2 == 1;
+                let wo = rounded(Vec3::new(w.x, w.y, if below { -z } else { z }));
+                let theta = if below { std::f64::consts::PI - cos.acos() } else { cos.acos() };
+                let name = format!("wo at {:.0}°, azimuth {:.0}°", theta.to_degrees(), phi.to_degrees());
                 // The pilot only places borders, so it may be the same in every run.
                 let cells = Cells::following(reference, wo, &mut Random::new(seed_for(0, &name)));
                 let integrals = cells.integrate(reference, wo);
@@ -133,6 +154,31 @@ impl<'a> View<'a> {
                 Prepared { name, wo, cells, integrals, total }
             })
         })
+    }
+    /// Two directions of the lattice as sweeps want them: wo of every difficult kind, wi any, near the mirror direction, near
+    /// wo, or sampled; on every side if light passes through. None if one lies in the surface.
+    pub(crate) fn pair(&self, random: &mut Random) -> Option<(Dir, Dir)> {
+        let side = |w: Dir, random: &mut Random| {
+            let down = self.claims.transmits && random.bits().is_multiple_of(2);
+            self.probe.snap(Vec3::new(w.x, w.y, if down { -w.z } else { w.z }))
+        };
+        let above = any_above(random);
+        let beside = partner(random, above);
+        let (wo, mut wi) = (side(above, random), side(beside, random));
+        if random.bits().is_multiple_of(4) {
+            let draw = self.probe.sample(wo, random.sampler_input(self.probe.single()));
+            if draw.kind == Kind::Continuous {
+                wi = draw.wi;
+            }
+        }
+        let inside = |w: Dir| w.z > 0.0 || (self.claims.transmits && w.z < 0.0);
+        (inside(wo) && inside(wi)).then_some((wo, wi))
+    }
+    /// wo of every difficult kind, from below too if light passes through.
+    pub(crate) fn any_wo(&self, random: &mut Random) -> Dir {
+        let w = any_above(random);
+        let down = self.claims.transmits && random.bits().is_multiple_of(2);
+        self.probe.snap(if down { Vec3::new(w.x, w.y, -w.z) } else { w })
     }
     /// The precision as a suffix of a name.
     pub(crate) fn precision(&self) -> &'static str {

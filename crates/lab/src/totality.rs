@@ -12,7 +12,7 @@ use crate::finding::{Finding, Run};
 use crate::probe::{Kind, Probe, demote, lane_value};
 use crate::random::Random;
 use crate::subject::View;
-use crate::zoo::Parameter;
+use crate::zoo::{Parameter, Species};
 use gonio_kernel::lobe::AnyLobe;
 use gonio_kernel::{Closure, F32x8, Surface, Vec3, closure::Unguarded};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -67,7 +67,8 @@ const TINY: [f32; 12] =
     [1e-45, 1e-40, f32::MIN_POSITIVE, 1e-30, 1e-22, 1e-18, 2e-18, 1e-14, 1e-12, 2e-12, 1.1e-10, 1e-9];
 
 /// How many lanes returned something that is not finite or negative, over one species, inside the domain.
-pub(crate) fn measure_inside(parameters: &[Parameter], build: Build<F32x8>, run: &Run) -> Finding {
+pub(crate) fn measure_inside(species: &Species, build: Build<F32x8>, run: &Run) -> Finding {
+    let parameters = species.parameters;
     let mut random = run.random();
     let mut finding = Finding::at_most(0.0, "unsound results without a guard, inside the domain ≤");
     let mut unsound = 0_usize;
@@ -80,7 +81,8 @@ pub(crate) fn measure_inside(parameters: &[Parameter], build: Build<F32x8>, run:
             for (p, range) in p.iter_mut().zip(parameters) {
                 p[l] = parameter(range, &mut random);
             }
-            (wo[l], wi[l]) = pair(&mut random);
+            let eta = species.nature.index.map(|index| p[index][l]);
+            (wo[l], wi[l]) = pair(species.nature.transmits, eta, &mut random);
         }
         let numbers: Vec<F32x8> = p.iter().copied().map(F32x8::new).collect();
         let surface = Surface::of(build(&numbers));
@@ -115,10 +117,22 @@ pub(crate) fn measure_inside(parameters: &[Parameter], build: Build<F32x8>, run:
 }
 
 /// Two directions of the domain: any kind, up to its edge in length, now and then with a tiny cosine or mirrored exactly.
-fn pair(random: &mut Random) -> (Vec3<f32>, Vec3<f32>) {
+/// From all sides if light passes through, and half the time within 10⁻³ of the critical angle of `eta`, if there is one.
+fn pair(transmits: bool, eta: Option<f32>, random: &mut Random) -> (Vec3<f32>, Vec3<f32>) {
     let wo = any_above(random);
     let wi = partner(random, wo);
     let (mut wo, mut wi) = (demote(wo), demote(wi));
+    if let Some(eta) = eta.filter(|_| random.bits().is_multiple_of(2)) {
+        // sinθ of the critical angle is the lesser of η and 1/η.
+        let sin = f64::from(eta.min(1.0 / eta)) + random.log_between(1e-9, 1e-3) * random.pick(&[-1.0, 0.0, 1.0]);
+        let (sin, phi) = (sin.clamp(0.0, 1.0), random.between(0.0, std::f64::consts::TAU));
+        let at = Vec3::new(sin * phi.cos(), sin * phi.sin(), (1.0 - sin * sin).sqrt());
+        wo = demote(at);
+    }
+    if transmits {
+        let turn = |w: Vec3<f32>, bits: u64| if bits.is_multiple_of(2) { Vec3::new(w.x, w.y, -w.z) } else { w };
+        (wo, wi) = (turn(wo, random.bits()), turn(wi, random.bits()));
+    }
     match random.bits() % 16 {
         0 => wo.z = random.pick(&TINY),
         1 => wi.z = random.pick(&TINY),
@@ -147,7 +161,8 @@ fn pair(random: &mut Random) -> (Vec3<f32>, Vec3<f32>) {
 }
 
 /// Broken promises of the guarded closure over special numbers.
-pub(crate) fn measure_special(parameters: &[Parameter], build: Build<f32>, run: &Run) -> Finding {
+pub(crate) fn measure_special(species: &Species, build: Build<f32>, run: &Run) -> Finding {
+    let parameters = species.parameters;
     let mut random = run.random();
     let mut finding = Finding::at_most(0.0, "results of the closure that break its promise ≤");
     let mut broken = 0_usize;
@@ -156,7 +171,7 @@ pub(crate) fn measure_special(parameters: &[Parameter], build: Build<f32>, run: 
     let places = count + 6 + 3;
     let rounds = run.by_effort(50_000, 500_000, 2_500_000);
     for round in 0..rounds {
-        let (wo, wi) = pair(&mut random);
+        let (wo, wi) = pair(species.nature.transmits, None, &mut random);
         let mut x: Vec<f32> = parameters.iter().map(|p| parameter(p, &mut random)).collect();
         x.extend(<[f32; 3]>::from(wo).into_iter().chain(<[f32; 3]>::from(wi)));
         x.extend([(); 3].map(|()| random.coarse() as f32));
@@ -238,7 +253,7 @@ pub(crate) fn measure_probe(view: View, run: &Run) -> Finding {
     let mut broken = 0_usize;
     let mut first = String::new();
     for round in 0..run.by_effort(50_000, 500_000, 2_500_000) {
-        let (wo, wi) = pair(&mut random);
+        let (wo, wi) = pair(view.claims.transmits, None, &mut random);
         let u = random.sampler_input(view.probe.single());
         let (mut o, mut i): ([f32; 3], [f32; 3]) = (wo.into(), wi.into());
         let special = round % 2 == 1;

@@ -4,7 +4,7 @@
 //! themselves and random pairs of directions are tried: a density that vanishes where f does not is an infinite weight.
 //! A stranger's lobe promises nothing, so only infinite weights fail it; the largest is reported.
 
-use crate::directions::{any_above, partner, show};
+use crate::directions::show;
 use crate::finding::{Finding, Run};
 use crate::probe::{Dir, Kind, Worth};
 use crate::subject::View;
@@ -21,10 +21,7 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
         false => Finding::at_most(f64::MAX, "max f_cos/pdf is finite ≤"),
     };
     for _ in 0..run.by_effort(4_000, 40_000, 400_000) {
-        let wo = view.probe.snap(any_above(&mut random));
-        if wo.z <= 0.0 {
-            continue;
-        }
+        let Some((wo, wi)) = view.pair(&mut random) else { continue };
         let bound = if promises { view.probe.weight_bound(wo) } else { 1.0 };
         let mut judge = |worth: Worth, wi: Dir, what: &str| {
             // Below the range of normal numbers a quotient means nothing: f32 denormals carry few bits.
@@ -47,7 +44,6 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
             Kind::Discrete(worth, _) => judge(worth, draw.wi, "discrete"),
             Kind::Failed => {}
         }
-        let wi = view.probe.snap(partner(&mut random, wo));
         judge(view.probe.eval(wo, wi), wi, "pair");
     }
     finding

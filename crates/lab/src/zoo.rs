@@ -6,8 +6,10 @@
 
 use crate::oracle;
 use crate::probe::{Dir, Worth};
-use gonio_kernel::lobe::{AnyLobe, Conductor, Lambert, Mirror};
-use gonio_kernel::{F32x8, Real, Rgb, Surface, fresnel::Fresnel, microfacet::Ggx};
+use gonio_kernel::fresnel::Fresnel;
+use gonio_kernel::lobe::{AnyLobe, Conductor, Dielectric, Lambert, Mirror, RoughDielectric};
+use gonio_kernel::microfacet::{Ggx, Masking};
+use gonio_kernel::{F32x8, Real, Rgb, Surface};
 
 /// A parameter and its domain, ends included.
 #[derive(Clone, Copy, Debug)]
@@ -21,9 +23,67 @@ pub(crate) struct Parameter {
 }
 
 const UNIT: Parameter = Parameter { lo: 0.0, hi: 1.0, log_from: None };
-const ALPHA: Parameter = Parameter { lo: 1e-4, hi: 1.0, log_from: Some(1e-4) };
+const ALPHA: Parameter = Parameter { lo: 1e-8, hi: 1.0, log_from: Some(1e-8) };
 const ETA: Parameter = Parameter { lo: 1e-4, hi: 100.0, log_from: Some(1e-4) };
 const EXTINCTION: Parameter = Parameter { lo: 0.0, hi: 100.0, log_from: Some(1e-4) };
+const INDEX: Parameter = Parameter { lo: 0.01, hi: 100.0, log_from: Some(0.01) };
+
+/// What is claimed of a lobe at all its parameters, beyond the laws that hold for all.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nature {
+    /// Purely discrete.
+    pub(crate) discrete: bool,
+    /// Scatters to the other side as well, and from there.
+    pub(crate) transmits: bool,
+    /// The sampler maps the unit square to directions one to one: then pdf · |∂ω/∂u| = 1.
+    pub(crate) one_to_one: bool,
+    /// Exchanging the directions exchanges the operands of commutative operations only: see the reciprocity instrument.
+    pub(crate) symmetric: bool,
+    /// Which number is a relative index of refraction.
+    pub(crate) index: Option<usize>,
+    /// No sample weighs more.
+    pub(crate) weight: f64,
+    /// What its plots vary.
+    pub(crate) varied: Varied,
+}
+
+/// Numbers of a species that plots set alike, and over which range.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Varied {
+    /// In words.
+    pub(crate) name: &'static str,
+    /// From which number up to which.
+    pub(crate) numbers: (usize, usize),
+    /// The range.
+    pub(crate) range: (f64, f64),
+    /// Whether its steps are ratios.
+    pub(crate) log: bool,
+    /// What plots of a single value take.
+    pub(crate) single: f32,
+}
+
+impl Varied {
+    const REFLECTANCE: Self = Self { name: "reflectance", numbers: (0, 3), range: (0.0, 1.0), log: false, single: 0.5 };
+    const WIDTH: Self = Self { name: "width α", numbers: (0, 2), range: (1e-4, 1.0), log: true, single: 0.2 };
+    const INDEX: Self = Self { name: "index η", numbers: (0, 1), range: (0.4, 2.5), log: true, single: 1.5 };
+}
+
+impl Nature {
+    /// A continuous reflector whose sampler is one to one and whose weights are at most 1.
+    const REFLECTOR: Self = Self {
+        discrete: false,
+        transmits: false,
+        one_to_one: true,
+        symmetric: true,
+        index: None,
+        weight: 1.0,
+        varied: Varied::WIDTH,
+    };
+    /// The same without microfacets.
+    const MATTE: Self = Self { varied: Varied::REFLECTANCE, ..Self::REFLECTOR };
+    /// The same as a discrete event.
+    const DISCRETE: Self = Self { discrete: true, one_to_one: false, ..Self::MATTE };
+}
 
 /// A lobe as a function of plain numbers.
 #[derive(Debug)]
@@ -40,6 +100,8 @@ pub(crate) struct Species {
     pub(crate) lanes: fn(&[F32x8]) -> AnyLobe<F32x8>,
     /// The textbook's answer: parameters, wo, wi to f_cos and pdf.
     pub(crate) oracle: fn(&[f64], Dir, Dir) -> Worth,
+    /// What is claimed of it.
+    pub(crate) nature: Nature,
 }
 
 impl Species {
@@ -47,10 +109,23 @@ impl Species {
     pub(crate) fn has_width(&self) -> bool {
         self.parameters[0].log_from == ALPHA.log_from
     }
+    /// It in its first row, with the numbers that plots vary replaced.
+    pub(crate) fn specimen(&'static self, number: f32) -> Row {
+        let rows = rows();
+        let (_, numbers) =
+            rows.iter().filter_map(Row::only).find(|(s, _)| std::ptr::eq(*s, self)).expect("every species has a row");
+        let mut numbers = numbers.to_vec();
+        let (from, to) = self.nature.varied.numbers;
+        numbers[from..to].fill(number);
+        row(self.name, &[(1.0, self, &numbers)])
+    }
 }
 
 macro_rules! species {
     ($name:ident, $text:literal, $build:ident, $oracle:path, [$($parameter:expr),*]) => {
+        species!($name, $text, $build, $oracle, [$($parameter),*], Nature::REFLECTOR);
+    };
+    ($name:ident, $text:literal, $build:ident, $oracle:path, [$($parameter:expr),*], $nature:expr) => {
         /// See the builder of the same name.
         pub(crate) static $name: Species = Species {
             name: $text,
@@ -59,13 +134,33 @@ macro_rules! species {
             double: $build,
             lanes: $build,
             oracle: $oracle,
+            nature: $nature,
         };
     };
 }
-species!(LAMBERT, "lambert", lambert, oracle::lambert, [UNIT, UNIT, UNIT]);
-species!(MIRROR, "mirror", mirror, oracle::mirror, [UNIT, UNIT, UNIT]);
+species!(LAMBERT, "lambert", lambert, oracle::lambert, [UNIT, UNIT, UNIT], Nature::MATTE);
+species!(MIRROR, "mirror", mirror, oracle::discrete, [UNIT, UNIT, UNIT], Nature::DISCRETE);
 species!(METAL, "conductor", metal, oracle::metal, [ALPHA, ALPHA, ETA, ETA, ETA, EXTINCTION, EXTINCTION, EXTINCTION]);
 species!(SCHLICK, "conductor-schlick", schlick, oracle::schlick, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
+species!(F82, "conductor-f82", f82, oracle::f82, [ALPHA, ALPHA, UNIT, UNIT, UNIT, UNIT, UNIT, UNIT]);
+species!(SEPARABLE, "conductor-separable", separable, oracle::separable, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
+species!(COAT, "dielectric-reflection", coat, oracle::coat, [ALPHA, ALPHA, INDEX]);
+species!(
+    GLASS,
+    "dielectric",
+    glass,
+    oracle::discrete,
+    [INDEX],
+    Nature { transmits: true, index: Some(0), varied: Varied::INDEX, ..Nature::DISCRETE }
+);
+species!(
+    GROUND,
+    "rough-dielectric",
+    ground,
+    oracle::ground,
+    [ALPHA, ALPHA, INDEX],
+    Nature { transmits: true, one_to_one: false, symmetric: false, index: Some(2), ..Nature::REFLECTOR }
+);
 
 fn rgb<R: Real>(p: &[R]) -> Rgb<R> {
     Rgb::new(p[0], p[1], p[2])
@@ -78,10 +173,29 @@ fn mirror<R: Real>(p: &[R]) -> AnyLobe<R> {
 }
 fn metal<R: Real>(p: &[R]) -> AnyLobe<R> {
     let fresnel = Fresnel::Conductor { eta: rgb(&p[2..]), k: rgb(&p[5..]) };
-    Conductor::new(Ggx { alpha_x: p[0], alpha_y: p[1] }, fresnel).into()
+    Conductor::new(ggx(p), fresnel).into()
 }
 fn schlick<R: Real>(p: &[R]) -> AnyLobe<R> {
-    Conductor::new(Ggx { alpha_x: p[0], alpha_y: p[1] }, Fresnel::Schlick { f0: rgb(&p[2..]) }).into()
+    Conductor::new(ggx(p), Fresnel::Schlick { f0: rgb(&p[2..]) }).into()
+}
+
+fn ggx<R: Real>(p: &[R]) -> Ggx<R> {
+    Ggx { alpha_x: p[0], alpha_y: p[1] }
+}
+fn f82<R: Real>(p: &[R]) -> AnyLobe<R> {
+    Conductor::new(ggx(p), Fresnel::F82 { f0: rgb(&p[2..]), tint: rgb(&p[5..]) }).into()
+}
+fn separable<R: Real>(p: &[R]) -> AnyLobe<R> {
+    Conductor::new(ggx(p), Fresnel::Schlick { f0: rgb(&p[2..]) }).with_masking(Masking::Separable).into()
+}
+fn coat<R: Real>(p: &[R]) -> AnyLobe<R> {
+    Conductor::new(ggx(p), Fresnel::Dielectric { eta: p[2] }).into()
+}
+fn glass<R: Real>(p: &[R]) -> AnyLobe<R> {
+    Dielectric::new(p[0]).into()
+}
+fn ground<R: Real>(p: &[R]) -> AnyLobe<R> {
+    RoughDielectric::new(ggx(p), p[2]).into()
 }
 
 /// A lobe of the kernel with its species. Implement it for a new lobe, or the table below does not compile.
@@ -95,7 +209,13 @@ impl InZoo for Mirror<f32> {
     const SPECIES: &'static [&'static Species] = &[&MIRROR];
 }
 impl InZoo for Conductor<f32> {
-    const SPECIES: &'static [&'static Species] = &[&METAL, &SCHLICK];
+    const SPECIES: &'static [&'static Species] = &[&METAL, &SCHLICK, &F82, &SEPARABLE, &COAT];
+}
+impl InZoo for Dielectric<f32> {
+    const SPECIES: &'static [&'static Species] = &[&GLASS];
+}
+impl InZoo for RoughDielectric<f32> {
+    const SPECIES: &'static [&'static Species] = &[&GROUND];
 }
 
 macro_rules! table {
@@ -141,6 +261,27 @@ impl Row {
             s.with(F32x8::splat(*w), (species.lanes)(&p))
         })
     }
+    /// The row with each number in turn moved to the next `f32`, up and down, where that stays in its domain.
+    pub(crate) fn nudged(&self) -> Vec<Row> {
+        let mut rows = Vec::new();
+        for (slot, (_, species, numbers)) in self.lobes.iter().enumerate() {
+            for (at, (&x, range)) in numbers.iter().zip(species.parameters).enumerate() {
+                for moved in [x.next_up(), x.next_down()] {
+                    if range.lo <= moved && moved <= range.hi {
+                        let mut row = self.clone();
+                        row.lobes[slot].2[at] = moved;
+                        rows.push(row);
+                    }
+                }
+            }
+        }
+        rows
+    }
+    /// The least width of its microfacets; 1 if there are none.
+    pub(crate) fn least_width(&self) -> f32 {
+        let widths = self.lobes.iter().filter(|(_, s, _)| s.has_width()).flat_map(|(.., p)| &p[..2]);
+        widths.fold(1.0, |least, &width| width.min(least))
+    }
     /// The numbers behind a single lobe of weight 1.
     pub(crate) fn only(&self) -> Option<(&'static Species, &[f32])> {
         match &self.lobes[..] {
@@ -150,7 +291,7 @@ impl Row {
     }
     /// Whether all lobes are purely discrete.
     pub(crate) fn is_discrete(&self) -> bool {
-        self.lobes.iter().all(|(_, species, _)| species.name == "mirror")
+        self.lobes.iter().all(|(_, species, _)| species.nature.discrete)
     }
 }
 
@@ -160,11 +301,14 @@ const SILVER: [f32; 6] = [0.155, 0.117, 0.138, 4.828, 3.122, 2.147];
 const WHITE: [f32; 3] = [1.0; 3];
 const COLOUR: [f32; 3] = [0.8, 0.5, 0.2];
 
+/// Species that return their first three numbers at every angle.
+const RETURNS_RHO: [&str; 2] = ["lambert", "mirror"];
+
 /// A row; weight, species and numbers of each lobe.
 pub(crate) fn row(name: impl Into<String>, lobes: &[(f32, &'static Species, &[f32])]) -> Row {
     let lobes: Vec<_> = lobes.iter().map(|(w, s, p)| (*w, *s, p.to_vec())).collect();
     // Lambert and mirror return ρ at every angle, so what is made of them has a known albedo.
-    let known = lobes.iter().all(|(_, s, _)| s.name == "lambert" || s.name == "mirror");
+    let known = lobes.iter().all(|(_, s, _)| RETURNS_RHO.contains(&s.name));
     let albedo =
         known.then(|| std::array::from_fn(|c| lobes.iter().map(|(w, _, p)| f64::from(*w) * f64::from(p[c])).sum()));
     Row { name: name.into(), lobes, albedo }
@@ -192,6 +336,24 @@ pub(crate) fn rows() -> Vec<Row> {
     let wide: &[f32] = &[0.5, 0.5, 0.04, 0.04, 0.04];
     let gold: Vec<f32> = [0.2, 0.2].into_iter().chain(GOLD).collect();
     rows.extend([
+        row("conductor 1e-8x1e-8 white", &[(1.0, &SCHLICK, &[1e-8, 1e-8, 1.0, 1.0, 1.0])]),
+        row("conductor 1e-3x1 white", &[(1.0, &SCHLICK, &[1e-3, 1.0, 1.0, 1.0, 1.0])]),
+        row("conductor f82", &[(1.0, &F82, &[0.3, 0.2, 0.9, 0.6, 0.4, 0.5, 0.8, 1.0])]),
+        row("conductor separable", &[(1.0, &SEPARABLE, &[0.6, 0.3, 0.9, 0.6, 0.4])]),
+        row("coat", &[(1.0, &COAT, &[0.2, 0.2, 1.5])]),
+        row("coat from within", &[(1.0, &COAT, &[0.2, 0.4, 0.66])]),
+        row("coat over lambert", &[(0.5, &COAT, &[0.1, 0.1, 1.5]), (0.5, &LAMBERT, &COLOUR)]),
+    ]);
+    // Smooth and rough interfaces: glass, from within, diamond, a thin one, none.
+    for eta in [1.5, 1.0 / 1.5, 2.4, 1.01, 1.0] {
+        rows.push(row(format!("glass {eta}"), &[(1.0, &GLASS, &[eta])]));
+    }
+    for (x, y, eta) in [(0.01, 0.01, 1.5), (0.3, 0.1, 1.5), (0.5, 0.5, 0.66), (1.0, 1.0, 2.4), (0.2, 0.2, 1.2)] {
+        rows.push(row(format!("ground glass {x}x{y} {eta}"), &[(1.0, &GROUND, &[x, y, eta])]));
+    }
+    rows.extend([
+        row("ground glass between equal indices", &[(1.0, &GROUND, &[0.3, 0.3, 1.0])]),
+        row("glass and lambert", &[(0.5, &GLASS, &[1.5]), (0.5, &LAMBERT, &COLOUR)]),
         row("half lambert half mirror", &[(0.5, &LAMBERT, &WHITE), (0.5, &MIRROR, &WHITE)]),
         row("mirror before lambert", &[(0.25, &MIRROR, &COLOUR), (0.75, &LAMBERT, &COLOUR)]),
         row("two mirrors", &[(0.25, &MIRROR, &COLOUR), (0.5, &MIRROR, &WHITE)]),

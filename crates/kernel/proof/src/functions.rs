@@ -2,9 +2,11 @@
 //!
 //! `cargo xtask no-std` reads the kernel's sources for `pub fn name<R: Real>` and expects each name here.
 
-use crate::{direction, some};
+use crate::{colour, direction, some};
 use core::hint::black_box;
-use gonio_kernel::{F32x8, Real, Vec3, frame, fresnel, math, warp};
+use gonio_kernel::fresnel::Interface;
+use gonio_kernel::microfacet::Masking;
+use gonio_kernel::{F32x8, Real, Rgb, Vec3, frame, fresnel, math, microfacet, warp};
 
 /// An argument that the optimiser knows nothing about.
 trait Unknown {
@@ -13,6 +15,16 @@ trait Unknown {
 impl<R: Real> Unknown for Vec3<R> {
     fn unknown() -> Self {
         direction(0.6, 0.0, 0.8)
+    }
+}
+impl<R: Real> Unknown for Rgb<R> {
+    fn unknown() -> Self {
+        colour(0.9)
+    }
+}
+impl Unknown for Masking {
+    fn unknown() -> Self {
+        if black_box(true) { Masking::HeightCorrelated } else { Masking::Separable }
     }
 }
 impl<R: Real> Unknown for [R; 2] {
@@ -53,9 +65,16 @@ macro_rules! functions {
             frame::cos_theta(w: Vec3<R>) -> R;
             frame::sin2_theta(w: Vec3<R>) -> R;
             frame::both_above(wo: Vec3<R>, wi: Vec3<R>) -> Truth;
+            fresnel::refracted_cosine(cos_o: R, eta: R) -> R;
+            fresnel::interface(cos_o: R, cos_t: R, eta: R) -> Interface<R>;
             fresnel::dielectric(cos_o: R, eta: R) -> R;
             fresnel::conductor(cos_o: R, eta: R, k: R) -> R;
+            fresnel::conductor_rgb(cos_o: R, eta: Rgb<R>, k: Rgb<R>) -> Rgb<R>;
             fresnel::schlick(cos_o: R, f0: R) -> R;
+            fresnel::f82(cos_o: R, f0: R, tint: R) -> R;
+            microfacet::vis_cos_i(masking: Masking, cos_o: R, s_o: R, cos_i: R, s_i: R) -> R;
+            microfacet::pdf_visible_reflected(d: R, bound: R, cos_o: R, s_o: R) -> R;
+            microfacet::reflect(wo: Vec3<R>, m: Vec3<R>) -> Vec3<R>;
             math::atan2_turns(y: R, x: R) -> R;
             math::sin_cos_turns(u: R) -> (R, R);
             warp::sample_cosine_hemisphere(u: [R; 2]) -> Vec3<R>;

@@ -5,8 +5,8 @@
 use crate::{colour, direction, some};
 use core::hint::black_box;
 use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{AnyLobe, Conductor, Lambert, Mirror};
-use gonio_kernel::microfacet::Ggx;
+use gonio_kernel::lobe::{self, AnyLobe, Conductor, Dielectric, Lambert, Mirror, RoughDielectric};
+use gonio_kernel::microfacet::{Ggx, Masking, Microfacets};
 use gonio_kernel::{Event, F32x8, Lobe, Real, Rgb, Sample, Value, Vec3, for_each_lobe};
 
 /// A lobe with parameters that the optimiser knows nothing about.
@@ -29,19 +29,55 @@ impl<R: Real> Example for Mirror<R> {
 impl<R: Real> Example for Conductor<R> {
     #[inline(always)]
     fn example() -> Self {
-        let fresnel = if black_box(true) {
-            Fresnel::Conductor { eta: colour(0.2), k: colour(3.9) }
-        } else {
-            Fresnel::Schlick { f0: colour(0.7) }
+        let fresnel = match black_box(0) {
+            0 => Fresnel::Conductor { eta: colour(0.2), k: colour(3.9) },
+            1 => Fresnel::Schlick { f0: colour(0.7) },
+            2 => Fresnel::F82 { f0: colour(0.7), tint: colour(0.9) },
+            _ => Fresnel::Dielectric { eta: some(1.5) },
         };
-        Self::new(Ggx { alpha_x: some(0.3), alpha_y: some(0.1) }, fresnel)
+        Self::new(microfacets(), fresnel).with_masking(masking())
     }
+}
+impl<R: Real> Example for Dielectric<R> {
+    #[inline(always)]
+    fn example() -> Self {
+        Self::new(some(1.5))
+    }
+}
+impl<R: Real> Example for RoughDielectric<R> {
+    #[inline(always)]
+    fn example() -> Self {
+        Self::new(microfacets(), some(1.5)).with_masking(masking())
+    }
+}
+
+/// The wrapper of lobes, around one of them.
+type TwoSided<R> = lobe::TwoSided<Conductor<R>>;
+impl<R: Real> Example for TwoSided<R> {
+    #[inline(always)]
+    fn example() -> Self {
+        lobe::TwoSided(Conductor::example())
+    }
+}
+
+/// A distribution, masking: any of them, for all that the optimiser knows.
+#[inline(always)]
+fn microfacets<R: Real>() -> Microfacets<R> {
+    Ggx { alpha_x: some(0.3), alpha_y: some(0.1) }.into()
+}
+#[inline(always)]
+fn masking() -> Masking {
+    if black_box(true) { Masking::HeightCorrelated } else { Masking::Separable }
 }
 
 macro_rules! prove_lobes {
     ($($lobe:ident),*) => {
+        #[inline(always)]
         pub(crate) fn prove() {
             $( prove_lobe!($lobe, f32); prove_lobe!($lobe, f64); prove_lobe!($lobe, F32x8); )*
+            prove_lobe!(TwoSided, f32);
+            prove_lobe!(TwoSided, f64);
+            prove_lobe!(TwoSided, F32x8);
         }
 
         /// One of each.

@@ -5,7 +5,8 @@ use core::hint::black_box;
 use gonio_kernel::lobe::AnyLobe;
 use gonio_kernel::units::{Area, Flux, Radiance, SolidAngle};
 use gonio_kernel::{
-    Closure, Event, F32x8, Frame, Mask, Mask8, Rgb, Sample, Surface, U32x8, Value, Vec3, closure::Unguarded,
+    Closure, Event, F32x8, Frame, Mask, Mask8, Rgb, Sample, Surface, U32x8, Value, Vec3,
+    closure::{Transport, Unguarded},
 };
 
 macro_rules! types {
@@ -22,7 +23,8 @@ macro_rules! types {
         #[unsafe(export_name = concat!("Closure_", stringify!($real)))]
         #[inline(never)]
         fn closure(surface: &Surface<R>, wo: Vec3<R>, wi: Vec3<R>, u: [R; 3]) -> (Value<R>, Sample<R>, Value<R>) {
-            let closure = Closure::new(surface, wo);
+            let transport = if black_box(true) { Transport::Radiance } else { Transport::Importance };
+            let closure = Closure::new(surface, wo).carrying(transport);
             let sample = closure.sample(u);
             (closure.eval(wi), sample, closure.discrete(&sample.event))
         }

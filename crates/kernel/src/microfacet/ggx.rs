@@ -2,22 +2,25 @@
 //!
 //! Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces"; anisotropic and height-correlated as in
 //! Heitz 2014, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs"; visible normals sampled by
-//! Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps".
+//! Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", and for reflection within the bound of
+//! Eto & Tokuyoshi 2023, "Bounded VNDF Sampling for Smith–GGX Reflections".
 //!
 //! With α_x along the tangent and α_y along the bitangent:
 //!
-//! - D(m) = 1 / (π α_x α_y (m_x²/α_x² + m_y²/α_y² + m_z²)²)
-//! - Λ(w) = (√(1 + (α_x²w_x² + α_y²w_y²)/w_z²) − 1)/2, G₁ = 1/(1 + Λ), G₂ = 1/(1 + Λ(wo) + Λ(wi))
+//! $$ D(m) = \frac{1}{\pi\,\alpha_x \alpha_y\,(m_x^2/\alpha_x^2 + m_y^2/\alpha_y^2 + m_z^2)^2} \qquad
+//!    s(w) = \sqrt{w_z^2 + \alpha_x^2 w_x^2 + \alpha_y^2 w_y^2} $$
 //!
-//! All formulas are arranged so that nothing is formed by subtraction: D from the unnormalised half vector, which stays
-//! exact near the mirror direction, and Λ through the stretched length s(w) = √(w_z² + α_x²w_x² + α_y²w_y²), which gives
-//! G₁ = 2w_z/(w_z + s(w)) and needs no division by w_z.
+//! with $s(w) = |\cos\theta|\,(1 + 2\Lambda(w))$, from which [`super`] makes masking, shadowing and densities.
+//!
+//! Nothing is formed by subtraction: D comes from the unnormalised half vector, which stays exact near the mirror
+//! direction. Cost: D one division, s one root, a visible normal one division and one root.
 
+use super::{ALPHA_MIN, widths_in_domain};
 use crate::math::sin_cos_turns;
 use crate::real::{Mask, Real};
 use crate::vec3::Vec3;
 
-/// A GGX surface of widths alpha_x and alpha_y, each in [1e-4, 1].
+/// A GGX surface of widths alpha_x and alpha_y, each in [1e-8, 1].
 #[derive(Clone, Copy, Debug)]
 pub struct Ggx<R> {
     /// Width along the tangent, α_u.
@@ -27,7 +30,7 @@ pub struct Ggx<R> {
 }
 
 impl<R: Real> Ggx<R> {
-    /// D of the half vector h = wo + wi, not normalised, with |h|² given \[1/sr\].
+    /// D of the normal along h (any length, h.z ≥ 0), with |h|² given \[1/sr\].
     #[inline(always)]
     pub fn d(&self, h: Vec3<R>, h_length2: R) -> R {
         // Both directions nearly in the surface and opposite: the squares of h would underflow, D does not depend on |h|.
@@ -37,63 +40,57 @@ impl<R: Real> Ggx<R> {
             h = Vec3::select(tiny, h.normalize_or(Vec3::unit_z()), h);
             h_length2 = R::select(tiny, R::ONE, h_length2);
         }
-        // With a = α_x α_y: D = a³|h|⁴/(π (α_y²h_x² + α_x²h_y² + a²h_z²)²), one division instead of four.
-        let a = self.alpha_x * self.alpha_y;
-        let x = self.alpha_y * h.x;
-        let y = self.alpha_x * h.y;
+        // With a = α_x α_y: D = a³|h|⁴/(π (α_y²h_x² + α_x²h_y² + a²h_z²)²), one division instead of four. One factor α is
+        // lifted by 1/α_min, so that the squares of the least widths do not underflow.
+        let lift = R::lit(1.0 / ALPHA_MIN);
+        let (alpha_x, alpha_y) = (self.alpha_x * lift, self.alpha_y * lift);
+        let a = alpha_x * self.alpha_y;
+        let x = alpha_y * h.x;
+        let y = alpha_x * h.y;
         let z = a * h.z;
         let q = x.mul_add(x, y.mul_add(y, z * z));
-        let r = a * h_length2 / q;
-        r * r * a * R::lit(core::f64::consts::FRAC_1_PI)
+        let r = a * lift * h_length2 / q;
+        // r²a first: r alone may be as large as 1/a.
+        r * (r * (self.alpha_x * self.alpha_y)) * R::lit(core::f64::consts::FRAC_1_PI)
     }
 
-    /// s(w) = √(w_z² + α_x²w_x² + α_y²w_y²), the length of w in the space where the surface is a hemisphere.
+    /// s(w) = √(w_z² + α_x²w_x² + α_y²w_y²): the length of w in the space where the surface is a hemisphere.
     #[inline(always)]
-    pub fn stretched_length(&self, w: Vec3<R>) -> R {
+    pub fn smith_length(&self, w: Vec3<R>) -> R {
         let x = self.alpha_x * w.x;
         let y = self.alpha_y * w.y;
         x.mul_add(x, y.mul_add(y, w.z * w.z)).sqrt()
     }
 
-    /// Height-correlated G₂/(4 cos_o), which is vis · cos_i, with s(wo) and s(wi) given:
-    /// cos_i/(2(cos_i s(wo) + cos_o s(wi))).
+    /// How much of the lower cap can reflect above the horizon, in [0, 1]: Eto & Tokuyoshi's k at wo above the surface.
+    /// k = (1 − α²)(1 + sinθ)²/((1 + sinθ)² + α²cos²θ) with the lesser width.
     #[inline(always)]
-    pub fn vis_cos_i(&self, cos_o: R, s_o: R, cos_i: R, s_i: R) -> R {
-        // The ratio stays finite where the products of denormal cosines and widths would underflow.
-        let lift = R::lit(1e20);
-        let (cos_o, cos_i) = (cos_o * lift, cos_i * lift);
-        R::lit(0.5) * cos_i / cos_i.mul_add(s_o, cos_o * s_i)
+    pub fn bound(&self, wo: Vec3<R>) -> R {
+        let a2 = self.alpha_x.min(self.alpha_y).sqr();
+        let s2 = (R::ONE + wo.x.mul_add(wo.x, wo.y * wo.y).sqrt()).sqr();
+        (R::ONE - a2) * s2 / a2.mul_add(wo.z * wo.z, s2)
     }
 
-    /// A microfacet normal, unit, distributed as those visible from wo (above the surface).
+    /// A normal of any length, distributed as those visible from wo (above the surface), with s(wo) given. `bound` is 1 for
+    /// all visible normals, or [`Ggx::bound`] for those that may reflect above the horizon.
     #[inline(always)]
-    pub fn sample_visible(&self, wo: Vec3<R>, u: [R; 2]) -> Vec3<R> {
+    pub fn sample_visible(&self, wo: Vec3<R>, s_o: R, bound: R, u: [R; 2]) -> Vec3<R> {
         // In the stretched space the surface is a unit hemisphere, and its mirrored view fills a spherical cap.
-        let o = Vec3::new(self.alpha_x * wo.x, self.alpha_y * wo.y, wo.z).normalize();
+        let o = Vec3::new(self.alpha_x * wo.x, self.alpha_y * wo.y, wo.z) * s_o.recip();
         let (sin_phi, cos_phi) = sin_cos_turns(u[0]);
-        let z = (R::ONE - u[1]).mul_add(R::ONE + o.z, -o.z);
+        let lowest = bound * o.z;
+        let z = (R::ONE - u[1]).mul_add(R::ONE + lowest, -lowest);
         let sin_theta = ((R::ONE - z) * (R::ONE + z)).max(R::ZERO).sqrt();
         let m = Vec3::new(sin_theta.mul_add(cos_phi, o.x), sin_theta.mul_add(sin_phi, o.y), z + o.z);
-        Vec3::new(self.alpha_x * m.x, self.alpha_y * m.y, m.z.max(R::ZERO)).normalize_or(Vec3::unit_z())
+        Vec3::new(self.alpha_x * m.x, self.alpha_y * m.y, m.z.max(R::ZERO))
     }
 
-    /// Density of the directions that mirror wo in a visible normal \[1/sr\], D given: G₁(wo) D/(4 cos_o).
-    #[inline(always)]
-    pub fn pdf_visible_reflected(&self, d: R, cos_o: R, s_o: R) -> R {
-        R::lit(0.5) * d / (cos_o + s_o)
-    }
-
-    /// Whether both widths lie in [1e-4, 1].
+    /// Whether both widths lie in [1e-8, 1].
     #[inline(always)]
     pub fn domain(&self) -> R::Mask {
-        let inside = |alpha: R| alpha.ge(R::lit(ALPHA_MIN)) & alpha.le(R::ONE);
-        inside(self.alpha_x) & inside(self.alpha_y)
+        widths_in_domain(self.alpha_x, self.alpha_y)
     }
 }
-
-/// The smallest width that `validate` tests in `f32`: below it the `f32` lattice of directions is coarser than the lobe,
-/// and a mirror is the better model.
-const ALPHA_MIN: f64 = 0.999_999e-4; // a hair below 1e-4, so that 1e-4 rounded to f32 is inside
 
 #[cfg(test)]
 mod tests {
@@ -131,20 +128,51 @@ mod tests {
     #[test]
     fn a_smooth_view_along_the_normal_stretches_to_its_own_length() {
         let ggx = Ggx { alpha_x: 0.3_f64, alpha_y: 0.7 };
-        assert_eq!(ggx.stretched_length(Vec3::unit_z()), 1.0);
-        assert!(close(ggx.stretched_length(Vec3::new(1.0, 0.0, 0.0)), 0.3, 1e-15));
+        assert_eq!(ggx.smith_length(Vec3::unit_z()), 1.0);
+        assert!(close(ggx.smith_length(Vec3::new(1.0, 0.0, 0.0)), 0.3, 1e-15));
     }
 
     #[test]
-    fn a_visible_normal_is_a_unit_vector_above_the_surface_that_faces_the_viewer() {
+    fn a_visible_normal_lies_above_the_surface_and_faces_the_viewer() {
         let mut random = Random(5);
-        for alpha in [1e-4_f32, 0.1, 1.0] {
+        for alpha in [1e-8_f32, 1e-4, 0.1, 1.0] {
             let ggx = Ggx { alpha_x: alpha, alpha_y: 1.0 };
             for _ in 0..1000 {
                 let wo = random.above();
-                let m = ggx.sample_visible(wo, [random.unit(), random.unit()]);
-                assert!(close(m.length().into(), 1.0, 1e-6) && m.z >= 0.0 && m.dot(wo) >= -1e-6, "{wo:?} {m:?}");
+                let u = [random.unit(), random.unit()];
+                for bound in [1.0, ggx.bound(wo)] {
+                    let m = ggx.sample_visible(wo, ggx.smith_length(wo), bound, u).normalize();
+                    assert!(close(m.length().into(), 1.0, 1e-6) && m.z >= 0.0 && m.dot(wo) >= -1e-6, "{wo:?} {m:?}");
+                }
             }
         }
+    }
+
+    #[test]
+    fn the_bound_loses_no_normal_that_reflects_above_the_horizon() {
+        // A normal below the bound has its mirrored view below the horizon: none that reflects upwards is missing.
+        let mut random = Random(6);
+        for (alpha_x, alpha_y) in [(1.0, 1.0), (0.5, 0.5), (0.9, 0.1), (0.05, 0.4)] {
+            let ggx = Ggx { alpha_x, alpha_y };
+            for _ in 0..10_000 {
+                let wo = Vec3::from(<[f32; 3]>::from(random.above()).map(f64::from));
+                let (s_o, k) = (ggx.smith_length(wo), ggx.bound(wo));
+                let u: f64 = random.unit().into();
+                // z of the cap, uniform over all visible normals; those below −k o_z are left out.
+                let (o_z, z) = (wo.z / s_o, (1.0 - u).mul_add(1.0 + wo.z / s_o, -wo.z / s_o));
+                if z < -k * o_z {
+                    let m = ggx.sample_visible(wo, s_o, 1.0, [random.unit().into(), u]).normalize();
+                    assert!((m * (2.0 * wo.dot(m)) - wo).z <= 1e-12, "{wo:?} {m:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_narrowest_surface_is_finite_and_peaks_as_it_should() {
+        let ggx = Ggx { alpha_x: 1e-8_f32, alpha_y: 1e-8 };
+        let peak = ggx.d(Vec3::unit_z() * 2.0, 4.0);
+        assert!(close(f64::from(peak) * PI * 1e-16, 1.0, 1e-6), "{peak}");
+        assert!(ggx.d(Vec3::new(1.0, 1.0, 0.0), 2.0).is_finite());
     }
 }

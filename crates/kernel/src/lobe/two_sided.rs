@@ -1,0 +1,85 @@
+//! Two-sided: a lobe that looks the same from behind, as a sheet of paper does.
+//!
+//! Seen from below, wo and wi are mirrored in the surface, and so is what is sampled. Reciprocity and energy are the lobe's.
+
+use super::{Event, Lobe, Prepared, Sample, Value};
+use crate::real::Real;
+use crate::rgb::Rgb;
+use crate::vec3::Vec3;
+
+/// A lobe on both sides of the surface. Meant for lobes that only reflect; a [`crate::Surface`] can be one too.
+#[derive(Clone, Copy, Debug)]
+pub struct TwoSided<L>(pub L);
+
+/// w with its z mirrored where wo is below the surface.
+#[inline(always)]
+fn turned<R: Real>(wo: Vec3<R>, w: Vec3<R>) -> Vec3<R> {
+    Vec3::new(w.x, w.y, R::select(wo.z.lt(R::ZERO), -w.z, w.z))
+}
+
+impl<R: Real, L: Lobe<R>> Lobe<R> for TwoSided<L> {
+    #[inline(always)]
+    fn prepare(&self, wo: Vec3<R>) -> Prepared<R> {
+        self.0.prepare(turned(wo, wo))
+    }
+
+    #[inline(always)]
+    fn eval_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
+        self.0.eval_prepared(turned(wo, wo), prepared, turned(wo, wi))
+    }
+
+    #[inline(always)]
+    fn sample_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
+        let sample = self.0.sample_prepared(turned(wo, wo), prepared, u);
+        Sample { wi: turned(wo, sample.wi), ..sample }
+    }
+
+    #[inline(always)]
+    fn discrete(&self, wo: Vec3<R>, event: &Event<R>) -> Value<R> {
+        self.0.discrete(turned(wo, wo), event)
+    }
+
+    #[inline(always)]
+    fn albedo_estimate(&self, wo: Vec3<R>) -> Rgb<R> {
+        self.0.albedo_estimate(turned(wo, wo))
+    }
+
+    #[inline(always)]
+    fn domain(&self) -> R::Mask {
+        self.0.domain()
+    }
+
+    #[inline(always)]
+    fn compression(&self, wo: Vec3<R>) -> R {
+        self.0.compression(turned(wo, wo))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lobe::{Lambert, Mirror};
+    use crate::testing::Random;
+
+    #[test]
+    fn from_behind_paper_looks_as_from_the_front() {
+        let mut random = Random(20);
+        let paper = TwoSided(Lambert::new(Rgb::new(0.8_f32, 0.5, 0.2)));
+        for _ in 0..1000 {
+            let (wo, wi) = (random.direction(), random.direction());
+            let (front, back) = (paper.eval(wo, wi), paper.eval(-wo, -wi));
+            assert_eq!((front.f_cos, front.pdf), (back.f_cos, back.pdf));
+            let sample = paper.sample(wo, [random.unit(), random.unit(), random.unit()]);
+            assert!(sample.event.failed || sample.wi.z * wo.z > 0.0, "{wo:?} {sample:?}");
+        }
+    }
+
+    #[test]
+    fn a_two_sided_mirror_reflects_from_below() {
+        let mirror = TwoSided(Mirror::new(Rgb::splat(0.5_f32)));
+        let wo = Vec3::new(0.6, 0.0, -0.8);
+        let sample = mirror.sample(wo, [0.5; 3]);
+        assert_eq!(sample.wi, Vec3::new(-0.6, 0.0, -0.8));
+        assert_eq!(mirror.discrete(wo, &sample.event).f_cos.r, 0.5);
+    }
+}
