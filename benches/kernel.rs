@@ -11,7 +11,7 @@
 use criterion::{Criterion, Throughput};
 use gonio_kernel::fresnel::Fresnel;
 use gonio_kernel::lobe::{Conductor, Lambert, Mirror};
-use gonio_kernel::microfacet::Ggx;
+use gonio_kernel::microfacet::{Beckmann, Ggx};
 use gonio_kernel::{F32x8, Lobe, Real, Rgb, Sample, Value, Vec3, for_each_lobe};
 use std::hint::black_box;
 use std::process::ExitCode;
@@ -32,6 +32,7 @@ fn main() -> ExitCode {
     }
     let mut criterion = Criterion::default().configure_from_args();
     rows(&mut criterion);
+    visible_normal_rows(&mut criterion);
     criterion.final_summary();
     ExitCode::SUCCESS
 }
@@ -78,6 +79,26 @@ macro_rules! lobe_rows {
 }
 for_each_lobe!(lobe_rows);
 
+/// What choosing a visible normal costs by itself.
+fn visible_normal_rows(criterion: &mut Criterion) {
+    fn beckmann<R: Real>() -> Beckmann<R> {
+        Beckmann { alpha_x: R::lit(0.3), alpha_y: R::lit(0.2) }
+    }
+    fn ggx<R: Real>() -> Ggx<R> {
+        Ggx { alpha_x: R::lit(0.3), alpha_y: R::lit(0.2) }
+    }
+    let (one, eight) = (Scalars::new(), Lanes::new());
+    let mut group = criterion.benchmark_group("visible normal");
+    group.throughput(Throughput::Elements(BATCH as u64));
+    group.bench_function("beckmann sample/f32", |b| b.iter(|| one.normals(|wo, u| beckmann().sample_visible(wo, u))));
+    group.bench_function("beckmann sample/F32x8", |b| {
+        b.iter(|| eight.normals(|wo, u| beckmann().sample_visible(wo, u)))
+    });
+    group.bench_function("ggx sample/f32", |b| b.iter(|| one.normals(|wo, u| ggx().sample_visible(wo, u))));
+    group.bench_function("ggx sample/F32x8", |b| b.iter(|| eight.normals(|wo, u| ggx().sample_visible(wo, u))));
+    group.finish();
+}
+
 /// A batch of input, one direction after the other or eight side by side.
 struct Batch<R> {
     wo: Vec<Vec3<R>>,
@@ -121,6 +142,12 @@ impl<R: Real> Batch<R> {
         }
     }
 
+    fn normals(&self, sample: impl Fn(Vec3<R>, [R; 2]) -> Vec3<R>) {
+        for (&wo, &u) in self.wo.iter().zip(&self.u) {
+            black_box(normal(&sample, black_box(wo), black_box([u[1], u[2]])));
+        }
+    }
+
     fn sample(&self, lobe: &impl Lobe<R>) {
         for (&wo, &u) in self.wo.iter().zip(&self.u) {
             black_box(sample(lobe, black_box(wo), black_box(u)));
@@ -131,6 +158,11 @@ impl<R: Real> Batch<R> {
 #[inline(never)]
 fn eval<R: Real>(lobe: &impl Lobe<R>, wo: Vec3<R>, wi: Vec3<R>) -> Value<R> {
     lobe.eval(wo, wi)
+}
+
+#[inline(never)]
+fn normal<R: Real>(sample: &impl Fn(Vec3<R>, [R; 2]) -> Vec3<R>, wo: Vec3<R>, u: [R; 2]) -> Vec3<R> {
+    sample(wo, u)
 }
 
 #[inline(never)]

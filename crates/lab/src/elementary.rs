@@ -16,13 +16,13 @@ pub(crate) type SinCos = fn(f64) -> (f64, f64);
 
 /// The kernel in `f32`; u must be an `f32`.
 pub(crate) fn single(u: f64) -> (f64, f64) {
-    let (sin, cos) = gonio_kernel::math::sin_cos_turns(u as f32);
+    let (sin, cos) = math::sin_cos_turns(u as f32);
     (f64::from(sin), f64::from(cos))
 }
 
 /// The kernel in `f64`.
 pub(crate) fn double(u: f64) -> (f64, f64) {
-    gonio_kernel::math::sin_cos_turns(u)
+    math::sin_cos_turns(u)
 }
 
 /// The worst error in ulp.
