@@ -10,7 +10,7 @@
 
 use criterion::{Criterion, Throughput};
 use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{Conductor, Lambert, Mirror};
+use gonio_kernel::lobe::{Conductor, Lambert, Mirror, Phong, PhongNorm};
 use gonio_kernel::microfacet::{Beckmann, Ggx};
 use gonio_kernel::{F32x8, Lobe, Real, Rgb, Sample, Value, Vec3, for_each_lobe};
 use std::hint::black_box;
@@ -57,6 +57,13 @@ impl<R: Real> Example for Conductor<R> {
         let eta = Rgb::new(0.22, 0.96, 1.17).map(R::lit);
         let k = Rgb::new(3.68, 2.59, 2.46).map(R::lit);
         Self::new(Ggx { alpha_x: R::lit(0.3), alpha_y: R::lit(0.2) }, Fresnel::Conductor { eta, k })
+    }
+}
+
+impl<R: Real> Example for Phong<R> {
+    fn example() -> Self {
+        let (diffuse, glossy) = (Rgb::new(0.4, 0.3, 0.1).map(R::lit), Rgb::new(0.3, 0.3, 0.3).map(R::lit));
+        Self { diffuse, glossy, exponent: R::lit(30.0), norm: PhongNorm::Lecture }
     }
 }
 

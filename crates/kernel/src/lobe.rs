@@ -11,10 +11,12 @@
 mod conductor;
 mod lambert;
 mod mirror;
+mod phong;
 
 pub use conductor::Conductor;
 pub use lambert::Lambert;
 pub use mirror::Mirror;
+pub use phong::{Phong, PhongNorm};
 
 use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
@@ -104,7 +106,7 @@ impl<R: Real> Event<R> {
 #[macro_export]
 macro_rules! for_each_lobe {
     ($macro:ident) => {
-        $macro! { Lambert, Mirror, Conductor }
+        $macro! { Lambert, Mirror, Conductor, Phong }
     };
 }
 

@@ -18,6 +18,29 @@ pub(crate) fn mirror(_p: &[f64], _wo: Dir, _wi: Dir) -> Worth {
     Worth { f_cos: [0.0; 3], pdf: 0.0 }
 }
 
+/// Phong's diffuse and glossy part, n/(α + 1) given: three k_d, α; k_s = 1 − k_d.
+fn phong(p: &[f64], wo: Dir, wi: Dir, excess: f64) -> Worth {
+    let exponent = p[3];
+    // The angle between two points of the sphere, from the chord between wo and the mirrored wi.
+    let chord = ((wo.x + wi.x).powi(2) + (wo.y + wi.y).powi(2) + (wo.z - wi.z).powi(2)).sqrt();
+    let cos = (2.0 * (0.5 * chord).min(1.0).asin()).cos();
+    let glossy = if cos > 0.0 { (exponent + 1.0) / (2.0 * PI) * cos.powf(exponent) } else { 0.0 };
+    let luminance = |c: [f64; 3]| 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+    let choose = luminance([p[0], p[1], p[2]]);
+    let f = [0, 1, 2].map(|c| p[c] / PI + (1.0 - p[c]) * glossy * excess);
+    Worth { f_cos: f.map(|f| f * wi.z), pdf: choose * wi.z / PI + (1.0 - choose) * glossy }
+}
+
+/// Phong as in the lecture: three k_d, α; k_s = 1 − k_d.
+pub(crate) fn phong_lecture(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    phong(p, wo, wi, 1.0)
+}
+
+/// Phong as by Lafortune and Willems.
+pub(crate) fn phong_lafortune(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    phong(p, wo, wi, (p[3] + 2.0) / (p[3] + 1.0))
+}
+
 /// A conductor: alpha_x, alpha_y, three η, three k.
 pub(crate) fn metal(p: &[f64], wo: Dir, wi: Dir) -> Worth {
     microfacet(p[0], p[1], wo, wi, |cos| [0, 1, 2].map(|c| conductor(cos, p[2 + c], p[5 + c])))

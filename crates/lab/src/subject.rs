@@ -68,7 +68,7 @@ impl<'a> Subject<'a> {
     pub(crate) fn of_row(row: &Row) -> Self {
         let claims = Claims {
             albedo: row.albedo,
-            one_to_one: row.only().is_some() && !row.is_discrete(),
+            one_to_one: row.only().is_some_and(|(species, p)| (species.one_to_one)(p)) && !row.is_discrete(),
             symmetric: true,
             one_event: row.only().is_some() && row.is_discrete(),
             discrete: row.is_discrete(),
@@ -76,8 +76,10 @@ impl<'a> Subject<'a> {
         };
         Self {
             name: row.name.clone(),
-            single: Some(Box::new(SurfaceProbe::new(row.single(), Some(row.lanes())))),
-            double: Some(Box::new(SurfaceProbe::new(row.double(), None))),
+            single: Some(Box::new(
+                SurfaceProbe::new(row.single(), Some(row.lanes())).with_weight_bounds(row.weight_bounds()),
+            )),
+            double: Some(Box::new(SurfaceProbe::new(row.double(), None).with_weight_bounds(row.weight_bounds()))),
             claims,
             prepared: Default::default(),
         }

@@ -6,7 +6,7 @@
 
 use crate::oracle;
 use crate::probe::{Dir, Worth};
-use gonio_kernel::lobe::{AnyLobe, Conductor, Lambert, Mirror};
+use gonio_kernel::lobe::{AnyLobe, Conductor, Lambert, Mirror, Phong, PhongNorm};
 use gonio_kernel::{F32x8, Real, Rgb, Surface, fresnel::Fresnel, microfacet::Ggx};
 
 /// A parameter and its domain, ends included.
@@ -22,6 +22,7 @@ pub(crate) struct Parameter {
 
 const UNIT: Parameter = Parameter { lo: 0.0, hi: 1.0, log_from: None };
 const ALPHA: Parameter = Parameter { lo: 1e-4, hi: 1.0, log_from: Some(1e-4) };
+const EXPONENT: Parameter = Parameter { lo: 0.0, hi: 1e7, log_from: Some(1e-2) };
 const ETA: Parameter = Parameter { lo: 1e-4, hi: 100.0, log_from: Some(1e-4) };
 const EXTINCTION: Parameter = Parameter { lo: 0.0, hi: 100.0, log_from: Some(1e-4) };
 
@@ -38,6 +39,10 @@ pub(crate) struct Species {
     pub(crate) double: fn(&[f64]) -> AnyLobe<f64>,
     /// In lanes.
     pub(crate) lanes: fn(&[F32x8]) -> AnyLobe<F32x8>,
+    /// The largest weight of a sample at these numbers.
+    pub(crate) weight_bound: fn(&[f32]) -> f64,
+    /// Whether the sampler is one to one at these numbers.
+    pub(crate) one_to_one: fn(&[f32]) -> bool,
     /// The textbook's answer: parameters, wo, wi to f_cos and pdf.
     pub(crate) oracle: fn(&[f64], Dir, Dir) -> Worth,
 }
@@ -51,6 +56,9 @@ impl Species {
 
 macro_rules! species {
     ($name:ident, $text:literal, $build:ident, $oracle:path, [$($parameter:expr),*]) => {
+        species!($name, $text, $build, $oracle, [$($parameter),*], |_| 1.0, |_| true);
+    };
+    ($name:ident, $text:literal, $build:ident, $oracle:path, [$($parameter:expr),*], $weight:expr, $one_to_one:expr) => {
         /// See the builder of the same name.
         pub(crate) static $name: Species = Species {
             name: $text,
@@ -58,6 +66,8 @@ macro_rules! species {
             single: $build,
             double: $build,
             lanes: $build,
+            weight_bound: $weight,
+            one_to_one: $one_to_one,
             oracle: $oracle,
         };
     };
@@ -66,6 +76,24 @@ species!(LAMBERT, "lambert", lambert, oracle::lambert, [UNIT, UNIT, UNIT]);
 species!(MIRROR, "mirror", mirror, oracle::mirror, [UNIT, UNIT, UNIT]);
 species!(METAL, "conductor", metal, oracle::metal, [ALPHA, ALPHA, ETA, ETA, ETA, EXTINCTION, EXTINCTION, EXTINCTION]);
 species!(SCHLICK, "conductor-schlick", schlick, oracle::schlick, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
+species!(
+    PHONG_LECTURE,
+    "phong-lecture",
+    phong_lecture,
+    oracle::phong_lecture,
+    [UNIT, UNIT, UNIT, EXPONENT],
+    |p| phong_weight(p, 1.0),
+    one_part
+);
+species!(
+    PHONG_LAFORTUNE,
+    "phong-lafortune",
+    phong_lafortune,
+    oracle::phong_lafortune,
+    [UNIT, UNIT, UNIT, EXPONENT],
+    |p| phong_weight(p, (f64::from(p[3]) + 2.0) / (f64::from(p[3]) + 1.0)),
+    one_part
+);
 
 fn rgb<R: Real>(p: &[R]) -> Rgb<R> {
     Rgb::new(p[0], p[1], p[2])
@@ -84,6 +112,28 @@ fn schlick<R: Real>(p: &[R]) -> AnyLobe<R> {
     Conductor::new(Ggx { alpha_x: p[0], alpha_y: p[1] }, Fresnel::Schlick { f0: rgb(&p[2..]) }).into()
 }
 
+/// Three k_d, α; k_s = 1 − k_d, so that every number of its range is in the domain.
+fn phong<R: Real>(p: &[R], norm: PhongNorm) -> Phong<R> {
+    let diffuse = rgb(p);
+    Phong { diffuse, glossy: diffuse.map(|k| R::ONE - k), exponent: p[3], norm }
+}
+fn phong_lecture<R: Real>(p: &[R]) -> AnyLobe<R> {
+    phong(p, PhongNorm::Lecture).into()
+}
+fn phong_lafortune<R: Real>(p: &[R]) -> AnyLobe<R> {
+    phong(p, PhongNorm::Lafortune).into()
+}
+/// max(k_d/p_d, k_s/p_s · excess) over channels.
+fn phong_weight(p: &[f32], excess: f64) -> f64 {
+    let phong = phong(&[p[0], p[1], p[2], p[3]].map(f64::from), PhongNorm::Lecture);
+    let part = |k: Rgb<f64>| if k.luminance() > 0.0 { k.largest() / k.luminance() } else { 0.0 };
+    // Their luminances add up to 1, and so do the probabilities.
+    part(phong.diffuse).max(part(phong.glossy) * excess)
+}
+fn one_part(p: &[f32]) -> bool {
+    p[..3] == [0.0; 3] || p[..3] == [1.0; 3]
+}
+
 /// A lobe of the kernel with its species. Implement it for a new lobe, or the table below does not compile.
 trait InZoo {
     const SPECIES: &'static [&'static Species];
@@ -96,6 +146,10 @@ impl InZoo for Mirror<f32> {
 }
 impl InZoo for Conductor<f32> {
     const SPECIES: &'static [&'static Species] = &[&METAL, &SCHLICK];
+}
+
+impl InZoo for Phong<f32> {
+    const SPECIES: &'static [&'static Species] = &[&PHONG_LECTURE, &PHONG_LAFORTUNE];
 }
 
 macro_rules! table {
@@ -133,6 +187,10 @@ impl Row {
             let p: Vec<f64> = p.iter().copied().map(f64::from).collect();
             s.with(f64::from(*w), (species.double)(&p))
         })
+    }
+    /// The largest weight of each lobe.
+    pub(crate) fn weight_bounds(&self) -> Vec<f64> {
+        self.lobes.iter().map(|(_, species, p)| (species.weight_bound)(p)).collect()
     }
     /// The surface in lanes, all alike.
     pub(crate) fn lanes(&self) -> Surface<F32x8> {
@@ -188,12 +246,20 @@ pub(crate) fn rows() -> Vec<Row> {
         let numbers: Vec<f32> = [x, y].into_iter().chain(metal).collect();
         rows.push(row(format!("conductor {x}x{y} {name}"), &[(1.0, &METAL, &numbers)]));
     }
+    for (name, species) in [("phong lecture", &PHONG_LECTURE), ("phong lafortune", &PHONG_LAFORTUNE)] {
+        for exponent in [0.0_f32, 1.0, 10.0, 100.0, 1e4, 1e7] {
+            rows.push(row(format!("{name} {exponent} glossy"), &[(1.0, species, &[0.0, 0.0, 0.0, exponent])]));
+            rows.push(row(format!("{name} {exponent} both"), &[(1.0, species, &[0.5, 0.25, 0.125, exponent])]));
+        }
+        rows.push(row(format!("{name} diffuse"), &[(1.0, species, &[1.0, 1.0, 1.0, 100.0])]));
+    }
     let sharp: &[f32] = &[0.03, 0.3, 0.9, 0.6, 0.4];
     let wide: &[f32] = &[0.5, 0.5, 0.04, 0.04, 0.04];
     let gold: Vec<f32> = [0.2, 0.2].into_iter().chain(GOLD).collect();
     rows.extend([
         row("half lambert half mirror", &[(0.5, &LAMBERT, &WHITE), (0.5, &MIRROR, &WHITE)]),
         row("mirror before lambert", &[(0.25, &MIRROR, &COLOUR), (0.75, &LAMBERT, &COLOUR)]),
+        row("phong over mirror", &[(0.5, &PHONG_LAFORTUNE, &[0.5, 0.25, 0.125, 30.0]), (0.5, &MIRROR, &WHITE)]),
         row("two mirrors", &[(0.25, &MIRROR, &COLOUR), (0.5, &MIRROR, &WHITE)]),
         row("lambert weight 0.3", &[(0.3, &LAMBERT, &COLOUR)]),
         row("lambert weight 0", &[(0.0, &LAMBERT, &WHITE)]),

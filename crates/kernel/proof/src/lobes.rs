@@ -5,7 +5,7 @@
 use crate::{colour, direction, some};
 use core::hint::black_box;
 use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{AnyLobe, Conductor, Lambert, Mirror};
+use gonio_kernel::lobe::{AnyLobe, Conductor, Lambert, Mirror, Phong, PhongNorm};
 use gonio_kernel::microfacet::Ggx;
 use gonio_kernel::{Event, F32x8, Lobe, Real, Rgb, Sample, Value, Vec3, for_each_lobe};
 
@@ -35,6 +35,14 @@ impl<R: Real> Example for Conductor<R> {
             Fresnel::Schlick { f0: colour(0.7) }
         };
         Self::new(Ggx { alpha_x: some(0.3), alpha_y: some(0.1) }, fresnel)
+    }
+}
+
+impl<R: Real> Example for Phong<R> {
+    #[inline(always)]
+    fn example() -> Self {
+        let norm = if black_box(true) { PhongNorm::Lecture } else { PhongNorm::Lafortune };
+        Self { diffuse: colour(0.4), glossy: colour(0.5), exponent: some(30.0), norm }
     }
 }
 
