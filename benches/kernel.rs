@@ -10,8 +10,8 @@
 
 use criterion::{Criterion, Throughput};
 use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{Conductor, Dielectric, Lambert, Mirror, RoughDielectric};
-use gonio_kernel::microfacet::Ggx;
+use gonio_kernel::lobe::{Conductor, Dielectric, Lambert, Mirror, Phong, PhongNorm, RoughDielectric};
+use gonio_kernel::microfacet::{Beckmann, Ggx};
 use gonio_kernel::{F32x8, Lobe, Real, Rgb, Sample, Value, Vec3, for_each_lobe};
 use std::hint::black_box;
 use std::process::ExitCode;
@@ -32,6 +32,7 @@ fn main() -> ExitCode {
     }
     let mut criterion = Criterion::default().configure_from_args();
     rows(&mut criterion);
+    visible_normal_rows(&mut criterion);
     criterion.final_summary();
     ExitCode::SUCCESS
 }
@@ -69,6 +70,12 @@ impl<R: Real> Example for RoughDielectric<R> {
         Self::new(Ggx { alpha_x: R::lit(0.3), alpha_y: R::lit(0.2) }, R::lit(1.5))
     }
 }
+impl<R: Real> Example for Phong<R> {
+    fn example() -> Self {
+        let (diffuse, glossy) = (Rgb::new(0.4, 0.3, 0.1).map(R::lit), Rgb::new(0.3, 0.3, 0.3).map(R::lit));
+        Self { diffuse, glossy, exponent: R::lit(30.0), norm: PhongNorm::Lecture }
+    }
+}
 
 macro_rules! lobe_rows {
     ($($lobe:ident),*) => {
@@ -88,6 +95,27 @@ macro_rules! lobe_rows {
     };
 }
 for_each_lobe!(lobe_rows);
+
+/// What choosing a visible normal costs by itself.
+fn visible_normal_rows(criterion: &mut Criterion) {
+    fn beckmann<R: Real>() -> Beckmann<R> {
+        Beckmann { alpha_x: R::lit(0.3), alpha_y: R::lit(0.2) }
+    }
+    fn ggx_normal<R: Real>(wo: Vec3<R>, u: [R; 2]) -> Vec3<R> {
+        let ggx = Ggx { alpha_x: R::lit(0.3), alpha_y: R::lit(0.2) };
+        ggx.sample_visible(wo, ggx.smith_length(wo), R::ONE, u)
+    }
+    let (one, eight) = (Scalars::new(), Lanes::new());
+    let mut group = criterion.benchmark_group("visible normal");
+    group.throughput(Throughput::Elements(BATCH as u64));
+    group.bench_function("beckmann sample/f32", |b| b.iter(|| one.normals(|wo, u| beckmann().sample_visible(wo, u))));
+    group.bench_function("beckmann sample/F32x8", |b| {
+        b.iter(|| eight.normals(|wo, u| beckmann().sample_visible(wo, u)))
+    });
+    group.bench_function("ggx sample/f32", |b| b.iter(|| one.normals(ggx_normal)));
+    group.bench_function("ggx sample/F32x8", |b| b.iter(|| eight.normals(ggx_normal)));
+    group.finish();
+}
 
 /// A batch of input, one direction after the other or eight side by side.
 struct Batch<R> {
@@ -132,6 +160,12 @@ impl<R: Real> Batch<R> {
         }
     }
 
+    fn normals(&self, sample: impl Fn(Vec3<R>, [R; 2]) -> Vec3<R>) {
+        for (&wo, &u) in self.wo.iter().zip(&self.u) {
+            black_box(normal(&sample, black_box(wo), black_box([u[1], u[2]])));
+        }
+    }
+
     fn sample(&self, lobe: &impl Lobe<R>) {
         for (&wo, &u) in self.wo.iter().zip(&self.u) {
             black_box(sample(lobe, black_box(wo), black_box(u)));
@@ -142,6 +176,11 @@ impl<R: Real> Batch<R> {
 #[inline(never)]
 fn eval<R: Real>(lobe: &impl Lobe<R>, wo: Vec3<R>, wi: Vec3<R>) -> Value<R> {
     lobe.eval(wo, wi)
+}
+
+#[inline(never)]
+fn normal<R: Real>(sample: &impl Fn(Vec3<R>, [R; 2]) -> Vec3<R>, wo: Vec3<R>, u: [R; 2]) -> Vec3<R> {
+    sample(wo, u)
 }
 
 #[inline(never)]

@@ -6,7 +6,7 @@
 
 use crate::real::{Mask, Precision, Real};
 use crate::vec3::Vec3;
-use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, Mul, MulAssign, Neg, Not, Shr, Sub};
+use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, Mul, MulAssign, Neg, Not, Shl, Shr, Sub};
 use wide::{f32x8, i32x8, u32x8};
 
 /// Eight `f32`.
@@ -179,6 +179,13 @@ impl Shr<u32> for U32x8 {
         Self(self.0 >> bits)
     }
 }
+impl Shl<u32> for U32x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn shl(self, bits: u32) -> Self {
+        Self(self.0 << bits)
+    }
+}
 impl Neg for F32x8 {
     type Output = Self;
     #[inline(always)]
@@ -285,6 +292,17 @@ impl Real for F32x8 {
         (shifted - magic, shifted.to_bits() & U32x8::splat(0x3f_ffff))
     }
     #[inline(always)]
+    fn ldexp(self, n: U32x8) -> Self {
+        (self.to_bits() + (n << 23)).as_real()
+    }
+    #[inline(always)]
+    fn split_exponent(self) -> (Self, Self) {
+        let (one, least) = (1.0_f32.to_bits(), core::f32::consts::FRAC_1_SQRT_2.to_bits());
+        let bits = self.to_bits() + U32x8::splat(one - least);
+        let exponent = (bits >> 23).to_real() - Self::splat((one >> 23) as f32);
+        (((bits & U32x8::splat(0x7f_ffff)) + U32x8::splat(least)).as_real(), exponent)
+    }
+    #[inline(always)]
     fn int(x: u32) -> U32x8 {
         U32x8::splat(x)
     }
@@ -306,7 +324,7 @@ impl Real for F32x8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{atan2_turns, sin_cos_turns};
+    use crate::math::{atan2_turns, erf, erf_inv, exp, exp_m1, ln, ln_1p, pow, sin_cos_turns};
     use crate::testing::{Random, same_bits, special_values};
     use std::vec::Vec;
 
@@ -330,8 +348,12 @@ mod tests {
         let sums = [a + b, a - b, a * b, a / b, -a, sum, product, a.mul_add(b, c), a.sqr(), a.recip()];
         let others = [a.sqrt(), a.abs(), a.min(b), a.max(b), a.copysign(b), a.clamp(-1.5, 0.5), a.or_zero(mask)];
         let chosen = [R::select(mask, a, c), R::select(!mask, a, c), a.round_to_int().0, R::lit(0.1), R::ZERO, R::ONE];
+        let (mantissa, exponent) = a.split_exponent();
+        let bits = [mantissa, exponent, a.ldexp(b.round_to_int().1)];
         let (sin, cos) = sin_cos_turns(a);
-        sums.into_iter().chain(others).chain(chosen).chain([sin, cos, atan2_turns(a, b)]).collect()
+        let angles = [sin, cos, atan2_turns(a, b)];
+        let functions = [exp(a), exp_m1(a), ln(a), ln_1p(a), pow(a, b), erf(a), erf_inv(a)];
+        sums.into_iter().chain(others).chain(chosen).chain(bits).chain(angles).chain(functions).collect()
     }
 
     /// Every operation on reals that has a truth as result, in order.

@@ -16,6 +16,7 @@ mod conductor;
 mod dielectric;
 mod lambert;
 mod mirror;
+mod phong;
 mod rough_dielectric;
 mod two_sided;
 
@@ -23,6 +24,7 @@ pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use lambert::Lambert;
 pub use mirror::Mirror;
+pub use phong::{Phong, PhongNorm};
 pub use rough_dielectric::RoughDielectric;
 pub use two_sided::TwoSided;
 
@@ -164,7 +166,7 @@ impl<R: Real> Event<R> {
 #[macro_export]
 macro_rules! for_each_lobe {
     ($macro:ident) => {
-        $macro! { Lambert, Mirror, Conductor, Dielectric, RoughDielectric }
+        $macro! { Lambert, Mirror, Conductor, Dielectric, RoughDielectric, Phong }
     };
 }
 

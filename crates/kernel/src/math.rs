@@ -1,6 +1,18 @@
 //! Elementary functions: one algorithm each for `f32`, `f64` and lanes, with the coefficients of the precision at hand.
 //!
-//! Coefficients are Cephes' minimax polynomials (Moshier, `sinf.c`, `sin.c`, `atanf.c` and `atan.c`).
+//! Angles use Cephes' minimax polynomials (Moshier, `sinf.c`, `sin.c`, `atanf.c` and `atan.c`); the sources of the others
+//! stand with them. Stated errors are those of a target with fused multiply-add.
+
+mod erf;
+mod exp;
+mod log;
+#[cfg(test)]
+mod values;
+
+pub use erf::{erf, erf_inv};
+pub(crate) use erf::{erf_and_exp, scaled_erfc};
+pub use exp::{exp, exp_m1, flushed_square};
+pub use log::{ln, ln_1p, pow};
 
 use crate::real::{Precision, Real};
 

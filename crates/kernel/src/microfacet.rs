@@ -12,8 +12,10 @@
 //! - separable $G_1 G_1/(4 c_o c_i) = 1/((c_o + s_o)(c_i + s_i))$,
 //! - visible normals $D_o(m) = G_1(o)\,D(m)\,|o·m|/c_o = 2 D(m)\,|o·m|/(c_o + s_o)$.
 
+mod beckmann;
 mod ggx;
 
+pub use beckmann::Beckmann;
 pub use ggx::Ggx;
 
 use crate::real::Real;
@@ -37,11 +39,19 @@ pub enum Masking {
 pub enum Microfacets<R> {
     /// See [`Ggx`].
     Ggx(Ggx<R>),
+    /// See [`Beckmann`].
+    Beckmann(Beckmann<R>),
 }
 
 impl<R> From<Ggx<R>> for Microfacets<R> {
     fn from(ggx: Ggx<R>) -> Self {
         Self::Ggx(ggx)
+    }
+}
+
+impl<R> From<Beckmann<R>> for Microfacets<R> {
+    fn from(beckmann: Beckmann<R>) -> Self {
+        Self::Beckmann(beckmann)
     }
 }
 
@@ -51,6 +61,7 @@ impl<R: Real> Microfacets<R> {
     pub fn d(&self, h: Vec3<R>, h_length2: R) -> R {
         match self {
             Self::Ggx(ggx) => ggx.d(h, h_length2),
+            Self::Beckmann(beckmann) => beckmann.d(h, h_length2),
         }
     }
     /// s(w) = |cosθ|(1 + 2Λ(w)).
@@ -58,6 +69,7 @@ impl<R: Real> Microfacets<R> {
     pub fn smith_length(&self, w: Vec3<R>) -> R {
         match self {
             Self::Ggx(ggx) => ggx.smith_length(w),
+            Self::Beckmann(beckmann) => beckmann.smith_length(w),
         }
     }
     /// How much of the normals that face away can reflect above the horizon, in [0, 1]; 1 where nothing better is known.
@@ -65,6 +77,7 @@ impl<R: Real> Microfacets<R> {
     pub fn bound(&self, wo: Vec3<R>) -> R {
         match self {
             Self::Ggx(ggx) => ggx.bound(wo),
+            Self::Beckmann(_) => R::ONE,
         }
     }
     /// A normal of any length, distributed as those visible from wo (above the surface), with s(wo) given; within `bound`.
@@ -72,6 +85,7 @@ impl<R: Real> Microfacets<R> {
     pub fn sample_visible(&self, wo: Vec3<R>, s_o: R, bound: R, u: [R; 2]) -> Vec3<R> {
         match self {
             Self::Ggx(ggx) => ggx.sample_visible(wo, s_o, bound, u),
+            Self::Beckmann(beckmann) => beckmann.sample_visible(wo, u),
         }
     }
     /// Whether both widths lie in [1e-8, 1].
@@ -79,6 +93,7 @@ impl<R: Real> Microfacets<R> {
     pub fn domain(&self) -> R::Mask {
         match self {
             Self::Ggx(ggx) => ggx.domain(),
+            Self::Beckmann(beckmann) => beckmann.domain(),
         }
     }
 }

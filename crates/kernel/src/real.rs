@@ -77,6 +77,10 @@ pub trait Real:
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// The nearest integer (ties to even) as a real and as an integer modulo 2²²; for |self| < 2²¹.
     fn round_to_int(self) -> (Self, Self::Int);
+    /// self·2ⁿ, n modulo 2⁹ (2¹² in `f64`), by adding n to the exponent's bits: self and the result must be normal numbers.
+    fn ldexp(self, n: Self::Int) -> Self;
+    /// m in [√½, √2) and an integer e with self = m·2ᵉ, for a positive normal number.
+    fn split_exponent(self) -> (Self, Self);
     /// The integer `x` in every lane.
     fn int(x: u32) -> Self::Int;
     /// Whether `bit` of `x` is set.
@@ -141,7 +145,7 @@ impl Mask for bool {
 }
 
 macro_rules! scalar_real {
-    ($t:ty, $narrow:ident, $precision:ident, $sign:expr, $magic:expr) => {
+    ($t:ty, $bits:ty, $narrow:ident, $precision:ident, $sign:expr, $magic:expr, $fraction:expr) => {
         impl Real for $t {
             type Mask = bool;
             type Int = u32;
@@ -201,6 +205,18 @@ macro_rules! scalar_real {
                 (shifted - $magic, (shifted.to_bits() & 0x3f_ffff) as u32)
             }
             #[inline(always)]
+            fn ldexp(self, n: u32) -> $t {
+                <$t>::from_bits(self.to_bits().wrapping_add(<$bits>::from(n) << $fraction))
+            }
+            #[inline(always)]
+            fn split_exponent(self) -> ($t, $t) {
+                // Counted from √½ on, the exponent's bits change where e does.
+                let (one, least) = (<$t>::to_bits(1.0), <$t>::to_bits(core::f64::consts::FRAC_1_SQRT_2 as $t));
+                let bits = self.to_bits().wrapping_add(one - least);
+                let exponent = (bits >> $fraction) as $t - (one >> $fraction) as $t;
+                (<$t>::from_bits((bits & ((1 << $fraction) - 1)) + least), exponent)
+            }
+            #[inline(always)]
             fn int(x: u32) -> u32 {
                 x
             }
@@ -219,5 +235,5 @@ macro_rules! scalar_real {
         }
     };
 }
-scalar_real!(f32, f32x4, Single, 0x8000_0000_u32, 12_582_912.0); // 1.5·2²³
-scalar_real!(f64, f64x2, Double, 0x8000_0000_0000_0000_u64, 6_755_399_441_055_744.0); // 1.5·2⁵²
+scalar_real!(f32, u32, f32x4, Single, 0x8000_0000_u32, 12_582_912.0, 23); // 1.5·2²³
+scalar_real!(f64, u64, f64x2, Double, 0x8000_0000_0000_0000_u64, 6_755_399_441_055_744.0, 52); // 1.5·2⁵²

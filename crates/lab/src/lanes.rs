@@ -139,6 +139,12 @@ fn parts<R: Real>(x: [R; 6]) -> Vec<R> {
         fresnel::conductor(x[3], x[4], x[5]),
         fresnel::schlick(x[3], x[4]),
     ]);
+    for x in [x[0], x[3], x[4] * R::lit(200.0) - R::lit(100.0)] {
+        let (mantissa, exponent) = x.split_exponent();
+        out.extend([mantissa, exponent, mantissa.ldexp(exponent.round_to_int().1)]);
+        out.extend([math::exp(x), math::exp_m1(x), math::ln(x), math::ln_1p(x), math::erf(x), math::erf_inv(x)]);
+    }
+    out.push(math::pow(x[3], x[4] * R::lit(200.0) - R::lit(100.0)));
     out.extend(warp::sample_uniform_triangle([x[3], x[4]]));
     let frames = [Frame::from_normal(v), Frame::from_normal_tangent(v, w)];
     let mut vectors = vec![

@@ -18,6 +18,29 @@ pub(crate) fn discrete(_p: &[f64], _wo: Dir, _wi: Dir) -> Worth {
     Worth { f_cos: [0.0; 3], pdf: 0.0 }
 }
 
+/// Phong's diffuse and glossy part, n/(α + 1) given: three k_d, α; k_s = 1 − k_d.
+fn phong(p: &[f64], wo: Dir, wi: Dir, excess: f64) -> Worth {
+    let exponent = p[3];
+    // The angle between two points of the sphere, from the chord between wo and the mirrored wi.
+    let chord = ((wo.x + wi.x).powi(2) + (wo.y + wi.y).powi(2) + (wo.z - wi.z).powi(2)).sqrt();
+    let cos = (2.0 * (0.5 * chord).min(1.0).asin()).cos();
+    let glossy = if cos > 0.0 { (exponent + 1.0) / (2.0 * PI) * cos.powf(exponent) } else { 0.0 };
+    let luminance = |c: [f64; 3]| 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+    let choose = luminance([p[0], p[1], p[2]]);
+    let f = [0, 1, 2].map(|c| p[c] / PI + (1.0 - p[c]) * glossy * excess);
+    Worth { f_cos: f.map(|f| f * wi.z), pdf: choose * wi.z / PI + (1.0 - choose) * glossy }
+}
+
+/// Phong as in the lecture: three k_d, α; k_s = 1 − k_d.
+pub(crate) fn phong_lecture(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    phong(p, wo, wi, 1.0)
+}
+
+/// Phong as by Lafortune and Willems.
+pub(crate) fn phong_lafortune(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    phong(p, wo, wi, (p[3] + 2.0) / (p[3] + 1.0))
+}
+
 /// A conductor: alpha_x, alpha_y, three η, three k.
 pub(crate) fn metal(p: &[f64], wo: Dir, wi: Dir) -> Worth {
     microfacet(p[0], p[1], wo, wi, |cos| [0, 1, 2].map(|c| conductor(cos, p[2 + c], p[5 + c])))
@@ -39,6 +62,25 @@ pub(crate) fn f82(p: &[f64], wo: Dir, wi: Dir) -> Worth {
             (schlick(cos) - (1.0 - p[5 + c]) * schlick(at) * bell(cos) / bell(at)).max(0.0)
         })
     })
+}
+
+/// Beckmann's distribution with Schlick's Fresnel: alpha_x, alpha_y, three f0. D in slopes (Walter et al. 2007, equation 25),
+/// Λ with the error function (Heitz 2014, equation 77); all visible normals as density.
+pub(crate) fn beckmann(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    let sum = [wo.x + wi.x, wo.y + wi.y, wo.z + wi.z];
+    let length = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();
+    let m = sum.map(|x| x / length);
+    let cos_om = wo.x * m[0] + wo.y * m[1] + wo.z * m[2];
+    let slopes = [m[0] / m[2] / p[0], m[1] / m[2] / p[1]];
+    let d = (-slopes[0] * slopes[0] - slopes[1] * slopes[1]).exp() / (PI * p[0] * p[1] * m[2].powi(4));
+    let lambda = |w: Dir| {
+        let a = w.z / ((p[0] * w.x).powi(2) + (p[1] * w.y).powi(2)).sqrt();
+        if a.is_infinite() { 0.0 } else { 0.5 * ((-a * a).exp() / (a * PI.sqrt()) - statrs::function::erf::erfc(a)) }
+    };
+    let (lambda_o, lambda_i) = (lambda(wo), lambda(wi));
+    let schlick = |c: usize| p[2 + c] + (1.0 - p[2 + c]) * (1.0 - cos_om).powi(5);
+    let f_cos = [0, 1, 2].map(|c| schlick(c) * d / (1.0 + lambda_o + lambda_i) / (4.0 * wo.z));
+    Worth { f_cos, pdf: d / (1.0 + lambda_o) / (4.0 * wo.z) }
 }
 
 /// Schlick's Fresnel with separable masking.

@@ -177,17 +177,19 @@ impl<R: Scalar, L: Lobe<R> + Sync> Probe for LobeProbe<'_, R, L> {
 pub(crate) struct SurfaceProbe<R> {
     surface: Surface<R>,
     lanes: Option<Surface<F32x8>>,
-    weight: f64,
+    weight_bounds: Vec<f64>,
 }
 
 impl<R: Scalar> SurfaceProbe<R> {
     /// The surface, measurable. With its eight-lane twin, batches are sampled in lanes (whose equality is tested apart).
+    /// Its lobes weigh at most 1, each by itself.
     pub(crate) fn new(surface: Surface<R>, lanes: Option<Surface<F32x8>>) -> Self {
-        Self { surface, lanes, weight: 1.0 }
+        let weight_bounds = surface.lobes().map(|_| 1.0).collect();
+        Self { surface, lanes, weight_bounds }
     }
-    /// The same, of lobes that weigh up to `weight` by themselves.
-    pub(crate) fn weighing(self, weight: f64) -> Self {
-        Self { weight, ..self }
+    /// The same, but its lobes weigh at most this, each by itself.
+    pub(crate) fn with_weight_bounds(self, weight_bounds: Vec<f64>) -> Self {
+        Self { weight_bounds, ..self }
     }
     fn at(&self, wo: Dir) -> Unguarded<'_, R> {
         Unguarded::new(&self.surface, narrow(wo)).carrying(Transport::Importance)
@@ -236,21 +238,20 @@ impl<R: Scalar> Probe for SurfaceProbe<R> {
         self.surface.lobes().map(|l| l.lobe.compression(narrow(wo)).widen()).fold(1.0, |product, one| product * one)
     }
     fn weight_bound(&self, wo: Dir) -> f64 {
-        // Lobe i is chosen with pᵢ = wᵢYᵢ/Σwⱼ Yⱼ, and none weighs more than B by itself: Σwᵢfᵢ/Σpᵢpdfᵢ ≤ B max wᵢ/pᵢ.
-        let estimates = self.surface.lobes().filter(|l| l.weight.widen() > 0.0).map(|l| {
-            let y = Lobe::albedo_estimate(&l.lobe, narrow::<R>(wo)).luminance().widen();
-            (l.weight.widen(), y)
+        // Lobe i is chosen with pᵢ = wᵢYᵢ/Σwⱼ Yⱼ and weighs at most bᵢ by itself: Σwᵢfᵢ/Σpᵢpdfᵢ ≤ max wᵢbᵢ/pᵢ.
+        let estimates = self.surface.lobes().zip(&self.weight_bounds).filter(|(l, _)| l.weight.widen() > 0.0);
+        let estimates = estimates.map(|(l, &bound)| {
+            (l.weight.widen(), Lobe::albedo_estimate(&l.lobe, narrow::<R>(wo)).luminance().widen(), bound)
         });
-        let bright: Vec<(f64, f64)> = estimates.filter(|(_, y)| *y > 0.0).collect();
-        self.weight
-            * match bright[..] {
-                [] => 1.0,
-                [(weight, _)] => weight,
-                _ => {
-                    let sum: f64 = bright.iter().map(|(w, y)| w * y).sum();
-                    sum / bright.iter().fold(f64::INFINITY, |least, (_, y)| least.min(*y))
-                }
+        let bright: Vec<(f64, f64, f64)> = estimates.filter(|(_, y, _)| *y > 0.0).collect();
+        match bright[..] {
+            [] => 1.0,
+            [(weight, _, bound)] => weight * bound,
+            _ => {
+                let sum: f64 = bright.iter().map(|(w, y, _)| w * y).sum();
+                sum * bright.iter().fold(0.0, |most: f64, (_, y, bound)| most.max(bound / y))
             }
+        }
     }
 }
 

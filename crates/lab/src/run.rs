@@ -181,6 +181,11 @@ fn kernel_tasks() -> Vec<Task<'static>> {
     tasks.push(Task::new("elementary", "sin_cos_turns f64", 0, |run| {
         elementary::measure(elementary::double, false, run)
     }));
+    for function in &elementary::FUNCTIONS {
+        let name = format!("{} f32", function.name);
+        tasks.push(Task::new("elementary", name, 0, |run| elementary::measure_function(function, run)));
+    }
+    tasks.push(Task::new("elementary", "pow f32", 0, |run| elementary::measure_pow(gonio_kernel::math::pow, run)));
     tasks.push(Task::new("warps", "uniform triangle f32", 1, |run| {
         warps::measure_triangle(warps::triangle_single, run)
     }));

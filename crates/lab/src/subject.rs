@@ -74,7 +74,7 @@ impl<'a> Subject<'a> {
     pub(crate) fn of_row(row: &Row) -> Self {
         let claims = Claims {
             albedo: row.albedo,
-            one_to_one: row.only().is_some_and(|(species, _)| species.nature.one_to_one),
+            one_to_one: row.only().is_some_and(|(species, p)| (species.nature.one_to_one)(p)),
             symmetric: row.lobes.iter().all(|(_, species, _)| species.nature.symmetric),
             transmits: row.lobes.iter().any(|(_, species, _)| species.nature.transmits),
             one_event: row.only().is_some_and(|(species, _)| species.nature.discrete && !species.nature.transmits),
@@ -82,13 +82,12 @@ impl<'a> Subject<'a> {
             width: Some(f64::from(row.least_width())),
             empty: row.lobes.iter().all(|(weight, ..)| *weight == 0.0),
         };
-        let weight = row.lobes.iter().fold(0.0, |most, (_, species, _)| species.nature.weight.max(most));
-        let probe = |row: &Row| SurfaceProbe::new(row.double(), None).weighing(weight);
+        let probe = |row: &Row| SurfaceProbe::new(row.double(), None).with_weight_bounds(row.weight_bounds());
         Self {
             name: row.name.clone(),
             // Narrower than the lattice of f32 directions a lobe has no shape there.
             single: (row.least_width() >= 1e-4).then(|| -> Box<dyn Probe> {
-                Box::new(SurfaceProbe::new(row.single(), Some(row.lanes())).weighing(weight))
+                Box::new(SurfaceProbe::new(row.single(), Some(row.lanes())).with_weight_bounds(row.weight_bounds()))
             }),
             double: Some(Box::new(probe(row))),
             nudged: row.nudged().iter().map(|row| -> Box<dyn Probe> { Box::new(probe(row)) }).collect(),

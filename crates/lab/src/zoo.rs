@@ -7,8 +7,8 @@
 use crate::oracle;
 use crate::probe::{Dir, Worth};
 use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{AnyLobe, Conductor, Dielectric, Lambert, Mirror, RoughDielectric};
-use gonio_kernel::microfacet::{Ggx, Masking};
+use gonio_kernel::lobe::{AnyLobe, Conductor, Dielectric, Lambert, Mirror, Phong, PhongNorm, RoughDielectric};
+use gonio_kernel::microfacet::{Beckmann, Ggx, Masking};
 use gonio_kernel::{F32x8, Real, Rgb, Surface};
 
 /// A parameter and its domain, ends included.
@@ -24,6 +24,7 @@ pub(crate) struct Parameter {
 
 const UNIT: Parameter = Parameter { lo: 0.0, hi: 1.0, log_from: None };
 const ALPHA: Parameter = Parameter { lo: 1e-8, hi: 1.0, log_from: Some(1e-8) };
+const EXPONENT: Parameter = Parameter { lo: 0.0, hi: 1e7, log_from: Some(1e-2) };
 const ETA: Parameter = Parameter { lo: 1e-4, hi: 100.0, log_from: Some(1e-4) };
 const EXTINCTION: Parameter = Parameter { lo: 0.0, hi: 100.0, log_from: Some(1e-4) };
 const INDEX: Parameter = Parameter { lo: 0.01, hi: 100.0, log_from: Some(0.01) };
@@ -35,14 +36,14 @@ pub(crate) struct Nature {
     pub(crate) discrete: bool,
     /// Scatters to the other side as well, and from there.
     pub(crate) transmits: bool,
-    /// The sampler maps the unit square to directions one to one: then pdf · |∂ω/∂u| = 1.
-    pub(crate) one_to_one: bool,
+    /// Whether, at these numbers, the sampler maps the unit square to directions one to one: then pdf · |∂ω/∂u| = 1.
+    pub(crate) one_to_one: fn(&[f32]) -> bool,
     /// Exchanging the directions exchanges the operands of commutative operations only: see the reciprocity instrument.
     pub(crate) symmetric: bool,
     /// Which number is a relative index of refraction.
     pub(crate) index: Option<usize>,
-    /// No sample weighs more.
-    pub(crate) weight: f64,
+    /// The largest weight of a sample at these numbers.
+    pub(crate) weight: fn(&[f32]) -> f64,
     /// What its plots vary.
     pub(crate) varied: Varied,
 }
@@ -65,6 +66,7 @@ pub(crate) struct Varied {
 impl Varied {
     const REFLECTANCE: Self = Self { name: "reflectance", numbers: (0, 3), range: (0.0, 1.0), log: false, single: 0.5 };
     const WIDTH: Self = Self { name: "width α", numbers: (0, 2), range: (1e-4, 1.0), log: true, single: 0.2 };
+    const EXPONENT: Self = Self { name: "exponent", numbers: (3, 4), range: (1.0, 1e4), log: true, single: 30.0 };
     const INDEX: Self = Self { name: "index η", numbers: (0, 1), range: (0.4, 2.5), log: true, single: 1.5 };
 }
 
@@ -73,16 +75,18 @@ impl Nature {
     const REFLECTOR: Self = Self {
         discrete: false,
         transmits: false,
-        one_to_one: true,
+        one_to_one: |_| true,
         symmetric: true,
         index: None,
-        weight: 1.0,
+        weight: |_| 1.0,
         varied: Varied::WIDTH,
     };
     /// The same without microfacets.
     const MATTE: Self = Self { varied: Varied::REFLECTANCE, ..Self::REFLECTOR };
+    /// Two parts, each with its own sampler; largest weights by [`phong_weight`].
+    const PHONG: Self = Self { one_to_one: one_part, varied: Varied::EXPONENT, ..Self::REFLECTOR };
     /// The same as a discrete event.
-    const DISCRETE: Self = Self { discrete: true, one_to_one: false, ..Self::MATTE };
+    const DISCRETE: Self = Self { discrete: true, one_to_one: |_| false, ..Self::MATTE };
 }
 
 /// A lobe as a function of plain numbers.
@@ -144,6 +148,7 @@ species!(METAL, "conductor", metal, oracle::metal, [ALPHA, ALPHA, ETA, ETA, ETA,
 species!(SCHLICK, "conductor-schlick", schlick, oracle::schlick, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
 species!(F82, "conductor-f82", f82, oracle::f82, [ALPHA, ALPHA, UNIT, UNIT, UNIT, UNIT, UNIT, UNIT]);
 species!(SEPARABLE, "conductor-separable", separable, oracle::separable, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
+species!(BECKMANN, "conductor-beckmann", beckmann, oracle::beckmann, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
 species!(COAT, "dielectric-reflection", coat, oracle::coat, [ALPHA, ALPHA, INDEX]);
 species!(
     GLASS,
@@ -159,7 +164,23 @@ species!(
     ground,
     oracle::ground,
     [ALPHA, ALPHA, INDEX],
-    Nature { transmits: true, one_to_one: false, symmetric: false, index: Some(2), ..Nature::REFLECTOR }
+    Nature { transmits: true, one_to_one: |_| false, symmetric: false, index: Some(2), ..Nature::REFLECTOR }
+);
+species!(
+    PHONG_LECTURE,
+    "phong-lecture",
+    phong_lecture,
+    oracle::phong_lecture,
+    [UNIT, UNIT, UNIT, EXPONENT],
+    Nature { weight: |p| phong_weight(p, 1.0), ..Nature::PHONG }
+);
+species!(
+    PHONG_LAFORTUNE,
+    "phong-lafortune",
+    phong_lafortune,
+    oracle::phong_lafortune,
+    [UNIT, UNIT, UNIT, EXPONENT],
+    Nature { weight: |p| phong_weight(p, (f64::from(p[3]) + 2.0) / (f64::from(p[3]) + 1.0)), ..Nature::PHONG }
 );
 
 fn rgb<R: Real>(p: &[R]) -> Rgb<R> {
@@ -194,8 +215,33 @@ fn coat<R: Real>(p: &[R]) -> AnyLobe<R> {
 fn glass<R: Real>(p: &[R]) -> AnyLobe<R> {
     Dielectric::new(p[0]).into()
 }
+fn beckmann<R: Real>(p: &[R]) -> AnyLobe<R> {
+    Conductor::new(Beckmann { alpha_x: p[0], alpha_y: p[1] }, Fresnel::Schlick { f0: rgb(&p[2..]) }).into()
+}
 fn ground<R: Real>(p: &[R]) -> AnyLobe<R> {
     RoughDielectric::new(ggx(p), p[2]).into()
+}
+
+/// Three k_d, α; k_s = 1 − k_d, so that every number of its range is in the domain.
+fn phong<R: Real>(p: &[R], norm: PhongNorm) -> Phong<R> {
+    let diffuse = rgb(p);
+    Phong { diffuse, glossy: diffuse.map(|k| R::ONE - k), exponent: p[3], norm }
+}
+fn phong_lecture<R: Real>(p: &[R]) -> AnyLobe<R> {
+    phong(p, PhongNorm::Lecture).into()
+}
+fn phong_lafortune<R: Real>(p: &[R]) -> AnyLobe<R> {
+    phong(p, PhongNorm::Lafortune).into()
+}
+/// max(k_d/p_d, k_s/p_s · excess) over channels.
+fn phong_weight(p: &[f32], excess: f64) -> f64 {
+    let phong = phong(&[p[0], p[1], p[2], p[3]].map(f64::from), PhongNorm::Lecture);
+    let part = |k: Rgb<f64>| if k.luminance() > 0.0 { k.largest() / k.luminance() } else { 0.0 };
+    // Their luminances add up to 1, and so do the probabilities.
+    part(phong.diffuse).max(part(phong.glossy) * excess)
+}
+fn one_part(p: &[f32]) -> bool {
+    p[..3] == [0.0; 3] || p[..3] == [1.0; 3]
 }
 
 /// A lobe of the kernel with its species. Implement it for a new lobe, or the table below does not compile.
@@ -209,13 +255,17 @@ impl InZoo for Mirror<f32> {
     const SPECIES: &'static [&'static Species] = &[&MIRROR];
 }
 impl InZoo for Conductor<f32> {
-    const SPECIES: &'static [&'static Species] = &[&METAL, &SCHLICK, &F82, &SEPARABLE, &COAT];
+    const SPECIES: &'static [&'static Species] = &[&METAL, &SCHLICK, &F82, &SEPARABLE, &BECKMANN, &COAT];
 }
 impl InZoo for Dielectric<f32> {
     const SPECIES: &'static [&'static Species] = &[&GLASS];
 }
 impl InZoo for RoughDielectric<f32> {
     const SPECIES: &'static [&'static Species] = &[&GROUND];
+}
+
+impl InZoo for Phong<f32> {
+    const SPECIES: &'static [&'static Species] = &[&PHONG_LECTURE, &PHONG_LAFORTUNE];
 }
 
 macro_rules! table {
@@ -253,6 +303,10 @@ impl Row {
             let p: Vec<f64> = p.iter().copied().map(f64::from).collect();
             s.with(f64::from(*w), (species.double)(&p))
         })
+    }
+    /// The largest weight of each lobe.
+    pub(crate) fn weight_bounds(&self) -> Vec<f64> {
+        self.lobes.iter().map(|(_, species, p)| (species.nature.weight)(p)).collect()
     }
     /// The surface in lanes, all alike.
     pub(crate) fn lanes(&self) -> Surface<F32x8> {
@@ -332,12 +386,23 @@ pub(crate) fn rows() -> Vec<Row> {
         let numbers: Vec<f32> = [x, y].into_iter().chain(metal).collect();
         rows.push(row(format!("conductor {x}x{y} {name}"), &[(1.0, &METAL, &numbers)]));
     }
+    for (name, species) in [("phong lecture", &PHONG_LECTURE), ("phong lafortune", &PHONG_LAFORTUNE)] {
+        for exponent in [0.0_f32, 1.0, 10.0, 100.0, 1e4, 1e7] {
+            rows.push(row(format!("{name} {exponent} glossy"), &[(1.0, species, &[0.0, 0.0, 0.0, exponent])]));
+            rows.push(row(format!("{name} {exponent} both"), &[(1.0, species, &[0.5, 0.25, 0.125, exponent])]));
+        }
+        rows.push(row(format!("{name} diffuse"), &[(1.0, species, &[1.0, 1.0, 1.0, 100.0])]));
+    }
     let sharp: &[f32] = &[0.03, 0.3, 0.9, 0.6, 0.4];
     let wide: &[f32] = &[0.5, 0.5, 0.04, 0.04, 0.04];
     let gold: Vec<f32> = [0.2, 0.2].into_iter().chain(GOLD).collect();
     rows.extend([
         row("conductor 1e-8x1e-8 white", &[(1.0, &SCHLICK, &[1e-8, 1e-8, 1.0, 1.0, 1.0])]),
         row("conductor 1e-3x1 white", &[(1.0, &SCHLICK, &[1e-3, 1.0, 1.0, 1.0, 1.0])]),
+        row("beckmann 1e-4x1e-4 white", &[(1.0, &BECKMANN, &[1e-4, 1e-4, 1.0, 1.0, 1.0])]),
+        row("beckmann 0.02x0.3 white", &[(1.0, &BECKMANN, &[0.02, 0.3, 1.0, 1.0, 1.0])]),
+        row("beckmann 0.4x0.4 colour", &[(1.0, &BECKMANN, &[0.4, 0.4, 0.8, 0.5, 0.2])]),
+        row("beckmann 1x1 white", &[(1.0, &BECKMANN, &[1.0, 1.0, 1.0, 1.0, 1.0])]),
         row("conductor f82", &[(1.0, &F82, &[0.3, 0.2, 0.9, 0.6, 0.4, 0.5, 0.8, 1.0])]),
         row("conductor separable", &[(1.0, &SEPARABLE, &[0.6, 0.3, 0.9, 0.6, 0.4])]),
         row("coat", &[(1.0, &COAT, &[0.2, 0.2, 1.5])]),
@@ -356,6 +421,7 @@ pub(crate) fn rows() -> Vec<Row> {
         row("glass and lambert", &[(0.5, &GLASS, &[1.5]), (0.5, &LAMBERT, &COLOUR)]),
         row("half lambert half mirror", &[(0.5, &LAMBERT, &WHITE), (0.5, &MIRROR, &WHITE)]),
         row("mirror before lambert", &[(0.25, &MIRROR, &COLOUR), (0.75, &LAMBERT, &COLOUR)]),
+        row("phong over mirror", &[(0.5, &PHONG_LAFORTUNE, &[0.5, 0.25, 0.125, 30.0]), (0.5, &MIRROR, &WHITE)]),
         row("two mirrors", &[(0.25, &MIRROR, &COLOUR), (0.5, &MIRROR, &WHITE)]),
         row("lambert weight 0.3", &[(0.3, &LAMBERT, &COLOUR)]),
         row("lambert weight 0", &[(0.0, &LAMBERT, &WHITE)]),

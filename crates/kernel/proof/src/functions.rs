@@ -77,6 +77,14 @@ macro_rules! functions {
             microfacet::reflect(wo: Vec3<R>, m: Vec3<R>) -> Vec3<R>;
             math::atan2_turns(y: R, x: R) -> R;
             math::sin_cos_turns(u: R) -> (R, R);
+            math::exp(x: R) -> R;
+            math::flushed_square(root: R, factor: R) -> R;
+            math::exp_m1(x: R) -> R;
+            math::ln(x: R) -> R;
+            math::ln_1p(x: R) -> R;
+            math::pow(x: R, y: R) -> R;
+            math::erf(x: R) -> R;
+            math::erf_inv(x: R) -> R;
             warp::sample_cosine_hemisphere(u: [R; 2]) -> Vec3<R>;
             warp::pdf_cosine_hemisphere(w: Vec3<R>) -> R;
             warp::sample_uniform_sphere(u: [R; 2]) -> Vec3<R>;

@@ -5,8 +5,8 @@
 use crate::{colour, direction, some};
 use core::hint::black_box;
 use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{self, AnyLobe, Conductor, Dielectric, Lambert, Mirror, RoughDielectric};
-use gonio_kernel::microfacet::{Ggx, Masking, Microfacets};
+use gonio_kernel::lobe::{self, AnyLobe, Conductor, Dielectric, Lambert, Mirror, Phong, PhongNorm, RoughDielectric};
+use gonio_kernel::microfacet::{Beckmann, Ggx, Masking, Microfacets};
 use gonio_kernel::{Event, F32x8, Lobe, Real, Rgb, Sample, Value, Vec3, for_each_lobe};
 
 /// A lobe with parameters that the optimiser knows nothing about.
@@ -63,11 +63,20 @@ impl<R: Real> Example for TwoSided<R> {
 /// A distribution, masking: any of them, for all that the optimiser knows.
 #[inline(always)]
 fn microfacets<R: Real>() -> Microfacets<R> {
-    Ggx { alpha_x: some(0.3), alpha_y: some(0.1) }.into()
+    let (alpha_x, alpha_y) = (some(0.3), some(0.1));
+    if black_box(true) { Ggx { alpha_x, alpha_y }.into() } else { Beckmann { alpha_x, alpha_y }.into() }
 }
 #[inline(always)]
 fn masking() -> Masking {
     if black_box(true) { Masking::HeightCorrelated } else { Masking::Separable }
+}
+
+impl<R: Real> Example for Phong<R> {
+    #[inline(always)]
+    fn example() -> Self {
+        let norm = if black_box(true) { PhongNorm::Lecture } else { PhongNorm::Lafortune };
+        Self { diffuse: colour(0.4), glossy: colour(0.5), exponent: some(30.0), norm }
+    }
 }
 
 macro_rules! prove_lobes {
