@@ -31,6 +31,7 @@
 extern crate std;
 
 pub mod closure;
+pub mod energy;
 pub mod frame;
 pub mod fresnel;
 mod lanes;

@@ -49,6 +49,7 @@ mod reference;
 mod run;
 mod statistics;
 mod subject;
+pub mod tables;
 mod totality;
 mod warps;
 mod weight;
