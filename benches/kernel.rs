@@ -10,7 +10,7 @@
 
 use criterion::{Criterion, Throughput};
 use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{Conductor, Dielectric, Lambert, Mirror, RoughDielectric};
+use gonio_kernel::lobe::{Conductor, Dielectric, Eon, Lambert, Mirror, RoughDielectric};
 use gonio_kernel::microfacet::Ggx;
 use gonio_kernel::{F32x8, Lobe, Real, Rgb, Sample, Value, Vec3, for_each_lobe};
 use std::hint::black_box;
@@ -67,6 +67,11 @@ impl<R: Real> Example for Dielectric<R> {
 impl<R: Real> Example for RoughDielectric<R> {
     fn example() -> Self {
         Self::new(Ggx { alpha_x: R::lit(0.3), alpha_y: R::lit(0.2) }, R::lit(1.5))
+    }
+}
+impl<R: Real> Example for Eon<R> {
+    fn example() -> Self {
+        Self::new(Rgb::new(0.8, 0.5, 0.2).map(R::lit), R::lit(0.6))
     }
 }
 

@@ -14,6 +14,7 @@
 
 mod conductor;
 mod dielectric;
+pub mod eon;
 mod lambert;
 mod mirror;
 mod rough_dielectric;
@@ -21,6 +22,7 @@ mod two_sided;
 
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
+pub use eon::Eon;
 pub use lambert::Lambert;
 pub use mirror::Mirror;
 pub use rough_dielectric::RoughDielectric;
@@ -164,7 +166,7 @@ impl<R: Real> Event<R> {
 #[macro_export]
 macro_rules! for_each_lobe {
     ($macro:ident) => {
-        $macro! { Lambert, Mirror, Conductor, Dielectric, RoughDielectric }
+        $macro! { Lambert, Mirror, Conductor, Dielectric, RoughDielectric, Eon }
     };
 }
 

@@ -5,7 +5,7 @@
 use crate::{colour, direction, some};
 use core::hint::black_box;
 use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{self, AnyLobe, Conductor, Dielectric, Lambert, Mirror, RoughDielectric};
+use gonio_kernel::lobe::{self, AnyLobe, Conductor, Dielectric, Eon, Lambert, Mirror, RoughDielectric, eon::Directional};
 use gonio_kernel::microfacet::{Ggx, Masking, Microfacets};
 use gonio_kernel::{Event, F32x8, Lobe, Real, Rgb, Sample, Value, Vec3, for_each_lobe};
 
@@ -68,6 +68,14 @@ fn microfacets<R: Real>() -> Microfacets<R> {
 #[inline(always)]
 fn masking() -> Masking {
     if black_box(true) { Masking::HeightCorrelated } else { Masking::Separable }
+}
+
+impl<R: Real> Example for Eon<R> {
+    #[inline(always)]
+    fn example() -> Self {
+        let directional = if black_box(true) { Directional::Exact } else { Directional::Fitted };
+        Self { directional, ..Self::new(colour(0.8), some(0.6)) }
+    }
 }
 
 macro_rules! prove_lobes {
