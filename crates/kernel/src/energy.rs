@@ -7,7 +7,9 @@
 //! - [`kulla_conty`] adds a lobe, wide and reciprocal, which holds exactly what is missing
 //!   (Kulla & Conty 2017, "Revisiting Physically Based Shading at Imageworks", after Kelemen & Szirmay-Kalos 2001):
 //!   $$f_{ms} = F_{ms}\,\frac{(1 - E(\mu_o))(1 - E(\mu_i))}{\pi(1 - E_{avg})}.$$
-//!   Light that is scattered more than once is coloured more than once: [`multiple_fresnel`].
+//!   Light that is scattered more than once is coloured more than once: [`multiple_fresnel`]. Against the random walk (the
+//!   instrument `walk`) the total of coloured metals is right to 2 % (with [`scattered_again`]), to 6 % for channels that
+//!   reflect less than half and at grazing.
 //! - [`turquin`] scales the single scattering up (Turquin 2019, "Practical multiple scattering compensation for microfacet
 //!   models"): one factor, no further lobe, no reciprocity.
 //!
@@ -125,13 +127,25 @@ pub fn albedo_avg<R: Real>(alpha: R) -> R {
 }
 
 /// F_ms: what becomes of the light that is scattered more than once, one channel, from the mean reflectance f_avg of one
-/// facet: F_avg² E_avg/(1 − F_avg(1 − E_avg)), in \[0, 1\]; 1 for f_avg = 1.
+/// facet and the probability `again` to meet a further one after the second: F_avg² (1 − again)/(1 − F_avg · again), in
+/// \[0, 1\]; 1 for f_avg = 1. A geometric series.
 ///
-/// A geometric series: after the second facet, whose F_avg is squared with that of the first, E_avg escapes and the rest
-/// meets a further one (Hoffman 2019). Kulla & Conty's slides have F_avg where this has F_avg².
+/// With `again` = 1 − E_avg this is Kulla & Conty's, with F_avg² where their slides have F_avg (Hoffman 2019). Against the
+/// random walk of Heitz et al. 2016, in per cent of the total albedo, grey reflectances from 0.2 to 0.9, cosines from 0.03 to 1:
+/// within 1 % up to α = 0.45 and 2.2 % up to 0.6, but 4.6 % too dark at 0.8 and 7.8 % at 1; with F_avg instead of its square
+/// 64 % too bright. [`scattered_again`] is closer.
 #[inline(always)]
-pub fn multiple_fresnel<R: Real>(f_avg: R, missing_avg: R) -> R {
-    f_avg * f_avg * (R::ONE - missing_avg) / (R::ONE - f_avg * missing_avg)
+pub fn multiple_fresnel<R: Real>(f_avg: R, again: R) -> R {
+    f_avg * f_avg * (R::ONE - again) / (R::ONE - f_avg * again)
+}
+
+/// How likely light that met two facets meets a further one, for [`multiple_fresnel`], from 1 − E at wo and wi and its mean.
+///
+/// Kulla & Conty take 1 − E_avg, but the second facet lies higher than the first: the random walk finds about 0.45 α over
+/// all directions, in proportion to the losses of both. Symmetric in wo and wi, so f_ms stays reciprocal.
+#[inline(always)]
+pub fn scattered_again<R: Real>(alpha: R, missing_o: R, missing_i: R, missing_avg: R) -> R {
+    (R::lit(0.73) * missing_i * (missing_o / missing_avg)).min(R::lit(0.6) * alpha)
 }
 
 /// f_ms \[1/sr\] from 1 − E at wo and wi, their mean and F_ms, as of [`Missing::at`], [`missing_avg`], [`multiple_fresnel`].

@@ -51,6 +51,7 @@ mod statistics;
 mod subject;
 pub mod tables;
 mod totality;
+mod walk;
 mod warps;
 mod weight;
 mod zoo;

@@ -64,7 +64,8 @@ macro_rules! functions {
             energy::missing_avg(alpha: R) -> R;
             energy::albedo(cos: R, alpha: R) -> R;
             energy::albedo_avg(alpha: R) -> R;
-            energy::multiple_fresnel(f_avg: R, missing_avg: R) -> R;
+            energy::multiple_fresnel(f_avg: R, again: R) -> R;
+            energy::scattered_again(alpha: R, missing_o: R, missing_i: R, missing_avg: R) -> R;
             energy::kulla_conty(missing_o: R, missing_i: R, missing_avg: R, f_ms: R) -> R;
             energy::effective_alpha(alpha_x: R, alpha_y: R) -> R;
             energy::turquin(f0: R, missing_o: R) -> R;
