@@ -165,4 +165,36 @@ mod tests {
         }
         assert!(least >= 1.0 - 1e-4 && most <= 1.0 + 1e-4, "{least} {most}");
     }
+
+    /// A table of the test data as numbers; says so in one line if it is not there.
+    fn cycles(name: &str) -> Option<Vec<f64>> {
+        let usual = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
+        let folder = std::env::var_os("GONIO_DATA").unwrap_or(usual.into());
+        let path = std::path::Path::new(&folder).join("tables").join(name);
+        let Ok(text) = std::fs::read_to_string(&path) else {
+            println!("{name}: not there ({}), not run", path.display());
+            return None;
+        };
+        Some(text.split([',', '\n', '\r']).filter_map(|x| x.trim().parse().ok()).collect())
+    }
+
+    #[test]
+    fn blenders_tables_say_the_same() {
+        let (Some(e), Some(mean)) = (cycles("cycles_ggx_E_32x32.csv"), cycles("cycles_ggx_Eavg_32.csv")) else {
+            return;
+        };
+        assert!(e.len() == 1024 && mean.len() == 32, "{} {}", e.len(), mean.len());
+        for j in 0..32 {
+            let alpha = (j as f64 / 31.0).powi(2).max(1e-4);
+            for i in 1..32 {
+                // The rows are μ = i/31, the columns roughness j/31. Their noise and six digits: 1e-6 at most is seen.
+                let (mu, there) = (i as f64 / 31.0, e[32 * i + j]);
+                let (truth, fit) = (1.0 - super::missing(mu, alpha), energy::albedo(mu, alpha));
+                assert!((truth - there).abs() < 5e-6, "μ {mu}, α {alpha}: {truth} and {there}");
+                assert!((fit - there).abs() < 5e-5, "μ {mu}, α {alpha}: {fit} and {there}");
+            }
+            let fit = energy::albedo_avg(alpha);
+            assert!((fit - mean[j]).abs() < 1e-4, "α {alpha}: {fit} and {}", mean[j]);
+        }
+    }
 }
