@@ -49,7 +49,9 @@ pub(crate) fn walk(
             return Some(Walk { wi: ray, weight, order });
         }
         below = (below / u.powf(1.0 / lambda)).clamp(0.0, 1.0);
-        let m = ggx.sample_visible(-ray, [random.uniform(), random.uniform()]);
+        // Visible from below the surface as well: the spherical cap does not mind.
+        let m = ggx.sample_visible(-ray, ggx.smith_length(ray), 1.0, [random.uniform(), random.uniform()]);
+        let m = m.normalize_or(Dir::unit_z());
         let cos = -ray.dot(m);
         ray = (ray + m * (2.0 * cos)).normalize();
         for (weight, f) in weight.iter_mut().zip(fresnel(cos.clamp(0.0, 1.0))) {
@@ -62,7 +64,7 @@ pub(crate) fn walk(
 /// Smith's Λ = (s/cosθ − 1)/2 for either side; −1 straight down, 0 straight up.
 fn lambda(ggx: &Ggx<f64>, w: Dir) -> f64 {
     let z = if w.z.abs() < 1e-12 { 1e-12_f64.copysign(w.z) } else { w.z };
-    0.5 * (ggx.stretched_length(w) / z - 1.0)
+    0.5 * (ggx.smith_length(w) / z - 1.0)
 }
 
 /// Walks longer than this are cut, counted, and lost.
