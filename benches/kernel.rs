@@ -10,7 +10,7 @@
 
 use criterion::{Criterion, Throughput};
 use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{Conductor, Dielectric, Lambert, Mirror, Phong, PhongNorm, RoughDielectric};
+use gonio_kernel::lobe::{Conductor, Dielectric, Eon, Lambert, Mirror, Phong, PhongNorm, RoughDielectric};
 use gonio_kernel::microfacet::{Beckmann, Ggx};
 use gonio_kernel::{F32x8, Lobe, Real, Rgb, Sample, Value, Vec3, for_each_lobe};
 use std::hint::black_box;
@@ -74,6 +74,11 @@ impl<R: Real> Example for Phong<R> {
     fn example() -> Self {
         let (diffuse, glossy) = (Rgb::new(0.4, 0.3, 0.1).map(R::lit), Rgb::new(0.3, 0.3, 0.3).map(R::lit));
         Self { diffuse, glossy, exponent: R::lit(30.0), norm: PhongNorm::Lecture }
+    }
+}
+impl<R: Real> Example for Eon<R> {
+    fn example() -> Self {
+        Self::new(Rgb::new(0.8, 0.5, 0.2).map(R::lit), R::lit(0.6))
     }
 }
 

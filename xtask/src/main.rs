@@ -11,6 +11,7 @@ mod fuzz;
 mod no_std;
 mod peers;
 mod sources;
+mod tables;
 mod validate;
 
 use std::process::ExitCode;
@@ -26,6 +27,7 @@ cargo xtask peers [--rounds N] [--spp N] [--python PATH]
 cargo xtask ratio                how much faster eight lanes are than one direction at a time
 cargo xtask fuzz [--executions N] [--target NAME]
                                  N inputs for each parser, 1,000,000 unless told; what broke one stays in target/fuzz
+cargo xtask tables [--check]     write the kernel's generated tables, or exit 1 if they would differ
 cargo xtask ci                   all that CI runs: .ci/run
 ";
 
@@ -42,6 +44,7 @@ fn main() -> ExitCode {
         ("peers", rest) => peers::run(rest),
         ("ratio", []) => cargo::run(cargo::cargo().args(["bench", "--bench", "kernel", "--", "--ratio"])),
         ("fuzz", rest) => fuzz::run(rest),
+        ("tables", rest) => tables::run(rest),
         ("ci", []) => ci::run(),
         ("help" | "-h" | "--help", []) => {
             print!("{USAGE}");

@@ -20,6 +20,7 @@ mod render;
 mod shipped;
 mod signals;
 mod statistics;
+mod tables;
 mod usage;
 mod validate;
 
@@ -49,6 +50,8 @@ enum Command {
     Accel(accel::Args),
     Compare(compare::Args),
     Validate(validate::Args),
+    #[command(hide = true)]
+    Tables(tables::Args),
 }
 
 impl Command {
@@ -59,6 +62,7 @@ impl Command {
             Self::Accel(args) => accel::run(args),
             Self::Compare(args) => compare::run(args),
             Self::Validate(args) => validate::run(args),
+            Self::Tables(args) => tables::run(args),
         }
     }
 }

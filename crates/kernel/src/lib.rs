@@ -7,7 +7,7 @@
 //! - [`Vec3`], [`Rgb`] and [`Frame`] carry directions, colours and the change to the local frame, in which the shading
 //!   normal is `z`, the tangent `x` and the bitangent `y`.
 //! - A [`Lobe`] is one scattering model: it evaluates `f_cos` and `pdf`, samples `wi`, and weighs discrete events.
-//!   [`lobe::Lambert`], [`lobe::Mirror`] and [`lobe::Conductor`] are lobes; a user's own type can be one.
+//!   [`lobe::Lambert`], [`lobe::Eon`], [`lobe::Mirror`] and [`lobe::Conductor`] are lobes; a user's own type can be one.
 //! - A [`Surface`] is a short list of weighted lobes: resolved parameters, no textures.
 //! - A [`Closure`] is a surface seen from `wo`: the only mixture code, and the only guard against input outside the domain.
 //!
@@ -31,6 +31,7 @@
 extern crate std;
 
 pub mod closure;
+pub mod energy;
 pub mod frame;
 pub mod fresnel;
 mod lanes;

@@ -14,6 +14,7 @@
 
 mod conductor;
 mod dielectric;
+pub mod eon;
 mod lambert;
 mod mirror;
 mod phong;
@@ -22,6 +23,7 @@ mod two_sided;
 
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
+pub use eon::Eon;
 pub use lambert::Lambert;
 pub use mirror::Mirror;
 pub use phong::{Phong, PhongNorm};
@@ -166,7 +168,7 @@ impl<R: Real> Event<R> {
 #[macro_export]
 macro_rules! for_each_lobe {
     ($macro:ident) => {
-        $macro! { Lambert, Mirror, Conductor, Dielectric, RoughDielectric, Phong }
+        $macro! { Lambert, Mirror, Conductor, Dielectric, RoughDielectric, Phong, Eon }
     };
 }
 

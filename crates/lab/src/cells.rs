@@ -105,7 +105,8 @@ impl Cells {
             let (x, y) = (radius * phi.cos(), radius * phi.sin());
             let wi = probe.snap(Vec3::new(x * cos - y * sin, x * sin + y * cos, z));
             let Worth { f_cos: f, pdf } = probe.eval(wo, wi);
-            let square = |f: f64| if f == 0.0 { 0.0 } else { f * f / pdf };
+            // Where the density has run out of numbers, f has nearly.
+            let square = |f: f64| if f < 1e-290 { 0.0 } else { f * f / pdf };
             [f[0], f[1], f[2], pdf, square(f[0]), square(f[1]), square(f[2])].map(|v| 2.0 * s * v)
         };
         // An f32 integrand is rough at the level of its rounding: refining beyond that is waste.

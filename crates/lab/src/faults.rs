@@ -10,6 +10,7 @@ use crate::random::direction;
 use crate::run::Task;
 use crate::statistics::{FAULT_MASS, FAULT_SIZE, samples_for};
 use crate::subject::{Subject, View};
+use crate::walk;
 use crate::zoo::{Row, rows};
 use crate::{Effort, faults_beneath};
 use crate::{chi2, consistency, discrete, furnace, normalisation, precision, reciprocity, totality, weight};
@@ -288,8 +289,28 @@ pub(crate) fn tasks() -> Vec<Task<'static>> {
             }));
         }
     }
+    for (name, model) in walk_faults() {
+        tasks.push(planted(name, "walk", move |run| walk::measure(model, run)));
+    }
     tasks.extend(faults_beneath::tasks());
     tasks
+}
+
+/// Compensations that are wrong on purpose.
+fn walk_faults() -> [(&'static str, walk::Model); 4] {
+    use walk::KERNEL;
+    [
+        (
+            "E_avg off by 2 %",
+            walk::Model { missing_avg: |alpha| 1.0 - 1.02 * (1.0 - (KERNEL.missing_avg)(alpha)), ..KERNEL },
+        ),
+        ("multiple scattering coloured once only", walk::Model { multiple: |f_avg, _, _, _| f_avg, ..KERNEL }),
+        (
+            "scattered again as often as at first",
+            walk::Model { multiple: |f_avg, _, _, mean| gonio_kernel::energy::multiple_fresnel(f_avg, mean), ..KERNEL },
+        ),
+        ("E off by 2 %", walk::Model { missing: |cos, alpha| 1.02 * (KERNEL.missing)(cos, alpha) - 0.02, ..KERNEL }),
+    ]
 }
 
 /// A task that fails unless the measurement fails.

@@ -14,7 +14,7 @@ use crate::zoo::{METAL, rows, species};
 use crate::{
     chi2, consistency, discrete, elementary, frames, furnace, lanes, mitsuba, normalisation, precision, reciprocity,
 };
-use crate::{reference, totality, warps, weight};
+use crate::{reference, totality, walk, warps, weight};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::time::Instant;
@@ -56,6 +56,10 @@ pub fn instruments() -> &'static [(&'static str, &'static str)] {
         ("totality", "finite and non-negative inside the domain without a guard, exactly zero outside with it"),
         ("reference", "the kernel agrees with an independent textbook implementation"),
         ("mitsuba", "the kernel agrees with values computed by Mitsuba 3"),
+        (
+            "walk",
+            "what single scattering loses, and what is added for it, is what a random walk on the microsurface finds",
+        ),
         ("frames", "local frames are orthonormal, right-handed and faithful to normal and tangent"),
         ("elementary", "elementary functions keep their stated error"),
         ("warps", "warps distribute points as their densities say"),
@@ -174,6 +178,7 @@ fn kernel_tasks() -> Vec<Task<'static>> {
     tasks.push(Task::new("reference", "Fresnel, roughness, photometry", 0, reference::measure_conventions));
     tasks.push(Task::new("mitsuba", "rough conductor", 0, |run| mitsuba::measure(METAL.double, run)));
     tasks.push(Task::new("mitsuba", "Fresnel", 0, mitsuba::measure_fresnel));
+    tasks.push(Task::new("walk", "GGX", walk::TESTS, |run| walk::measure(walk::KERNEL, run)));
     tasks.push(Task::new("frames", "from normal and tangent", 0, |run| frames::measure(frames::kernel, run)));
     tasks.push(Task::new("elementary", "sin_cos_turns f32", 0, |run| {
         elementary::measure(elementary::single, true, run)

@@ -25,6 +25,8 @@ pub(crate) struct Claims {
     pub(crate) discrete: bool,
     /// Scatters to the other side, and from there.
     pub(crate) transmits: bool,
+    /// How far the albedo may lie above 1, or from its known value, by the model's own admission.
+    pub(crate) slack: f64,
     /// No lobe has a positive weight: nothing is ever sampled.
     pub(crate) empty: bool,
     /// The least width of a lobe, if it is narrow.
@@ -79,6 +81,7 @@ impl<'a> Subject<'a> {
             transmits: row.lobes.iter().any(|(_, species, _)| species.nature.transmits),
             one_event: row.only().is_some_and(|(species, _)| species.nature.discrete && !species.nature.transmits),
             discrete: row.is_discrete(),
+            slack: row.lobes.iter().map(|(weight, species, _)| f64::from(*weight) * species.nature.slack).sum(),
             width: Some(f64::from(row.least_width())),
             empty: row.lobes.iter().all(|(weight, ..)| *weight == 0.0),
         };

@@ -7,7 +7,8 @@
 use crate::oracle;
 use crate::probe::{Dir, Worth};
 use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{AnyLobe, Conductor, Dielectric, Lambert, Mirror, Phong, PhongNorm, RoughDielectric};
+use gonio_kernel::lobe::eon::{self, Directional};
+use gonio_kernel::lobe::{AnyLobe, Conductor, Dielectric, Eon, Lambert, Mirror, Phong, PhongNorm, RoughDielectric};
 use gonio_kernel::microfacet::{Beckmann, Ggx, Masking};
 use gonio_kernel::{F32x8, Real, Rgb, Surface};
 
@@ -44,6 +45,8 @@ pub(crate) struct Nature {
     pub(crate) index: Option<usize>,
     /// The largest weight of a sample at these numbers.
     pub(crate) weight: fn(&[f32]) -> f64,
+    /// How far the albedo may lie above 1, or from its known value, by the model's own admission.
+    pub(crate) slack: f64,
     /// What its plots vary.
     pub(crate) varied: Varied,
 }
@@ -79,6 +82,7 @@ impl Nature {
         symmetric: true,
         index: None,
         weight: |_| 1.0,
+        slack: 0.0,
         varied: Varied::WIDTH,
     };
     /// The same without microfacets.
@@ -144,6 +148,18 @@ macro_rules! species {
 }
 species!(LAMBERT, "lambert", lambert, oracle::lambert, [UNIT, UNIT, UNIT], Nature::MATTE);
 species!(MIRROR, "mirror", mirror, oracle::discrete, [UNIT, UNIT, UNIT], Nature::DISCRETE);
+// Sampled by a mixture of two densities. The closed form of the albedo holds for unit directions, and those of the instruments
+// are unit to half an ulp of f32.
+const EON: Nature = Nature { one_to_one: |_| false, weight: |_| eon::LARGEST_WEIGHT, slack: 1e-7, ..Nature::MATTE };
+species!(EON_EXACT, "eon-exact", eon_exact, oracle::eon_exact, [UNIT, UNIT, UNIT, UNIT], EON);
+species!(
+    EON_FITTED,
+    "eon-fitted",
+    eon_fitted,
+    oracle::eon_fitted,
+    [UNIT, UNIT, UNIT, UNIT],
+    Nature { slack: 2e-3, ..EON } // the fit bounds energy no better
+);
 species!(METAL, "conductor", metal, oracle::metal, [ALPHA, ALPHA, ETA, ETA, ETA, EXTINCTION, EXTINCTION, EXTINCTION]);
 species!(SCHLICK, "conductor-schlick", schlick, oracle::schlick, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
 species!(F82, "conductor-f82", f82, oracle::f82, [ALPHA, ALPHA, UNIT, UNIT, UNIT, UNIT, UNIT, UNIT]);
@@ -243,6 +259,12 @@ fn phong_weight(p: &[f32], excess: f64) -> f64 {
 fn one_part(p: &[f32]) -> bool {
     p[..3] == [0.0; 3] || p[..3] == [1.0; 3]
 }
+fn eon_exact<R: Real>(p: &[R]) -> AnyLobe<R> {
+    Eon::new(rgb(p), p[3]).into()
+}
+fn eon_fitted<R: Real>(p: &[R]) -> AnyLobe<R> {
+    Eon { directional: Directional::Fitted, ..Eon::new(rgb(p), p[3]) }.into()
+}
 
 /// A lobe of the kernel with its species. Implement it for a new lobe, or the table below does not compile.
 trait InZoo {
@@ -253,6 +275,9 @@ impl InZoo for Lambert<f32> {
 }
 impl InZoo for Mirror<f32> {
     const SPECIES: &'static [&'static Species] = &[&MIRROR];
+}
+impl InZoo for Eon<f32> {
+    const SPECIES: &'static [&'static Species] = &[&EON_EXACT, &EON_FITTED];
 }
 impl InZoo for Conductor<f32> {
     const SPECIES: &'static [&'static Species] = &[&METAL, &SCHLICK, &F82, &SEPARABLE, &BECKMANN, &COAT];
@@ -362,7 +387,9 @@ const RETURNS_RHO: [&str; 2] = ["lambert", "mirror"];
 pub(crate) fn row(name: impl Into<String>, lobes: &[(f32, &'static Species, &[f32])]) -> Row {
     let lobes: Vec<_> = lobes.iter().map(|(w, s, p)| (*w, *s, p.to_vec())).collect();
     // Lambert and mirror return ρ at every angle, so what is made of them has a known albedo.
-    let known = lobes.iter().all(|(_, s, _)| RETURNS_RHO.contains(&s.name));
+    // So has exact EON that is white, or smooth.
+    let is_lawful = |s: &Species, p: &[f32]| s.name == "eon-exact" && (p[3] == 0.0 || p[..3] == WHITE);
+    let known = lobes.iter().all(|(_, s, p)| RETURNS_RHO.contains(&s.name) || is_lawful(s, p));
     let albedo =
         known.then(|| std::array::from_fn(|c| lobes.iter().map(|(w, _, p)| f64::from(*w) * f64::from(p[c])).sum()));
     Row { name: name.into(), lobes, albedo }
@@ -392,6 +419,13 @@ pub(crate) fn rows() -> Vec<Row> {
             rows.push(row(format!("{name} {exponent} both"), &[(1.0, species, &[0.5, 0.25, 0.125, exponent])]));
         }
         rows.push(row(format!("{name} diffuse"), &[(1.0, species, &[1.0, 1.0, 1.0, 100.0])]));
+    }
+    for roughness in [0.0_f32, 0.25, 0.5, 1.0] {
+        for (name, species) in [("exact", &EON_EXACT), ("fitted", &EON_FITTED)] {
+            for (colour, [r, g, b]) in [("white", WHITE), ("colour", COLOUR)] {
+                rows.push(row(format!("eon {name} {roughness} {colour}"), &[(1.0, species, &[r, g, b, roughness])]));
+            }
+        }
     }
     let sharp: &[f32] = &[0.03, 0.3, 0.9, 0.6, 0.4];
     let wide: &[f32] = &[0.5, 0.5, 0.04, 0.04, 0.04];
@@ -427,6 +461,7 @@ pub(crate) fn rows() -> Vec<Row> {
         row("lambert weight 0", &[(0.0, &LAMBERT, &WHITE)]),
         row("conductor over lambert", &[(0.4, &SCHLICK, sharp), (0.6, &LAMBERT, &COLOUR)]),
         row("conductor weight 0, lambert", &[(0.0, &SCHLICK, sharp), (1.0, &LAMBERT, &COLOUR)]),
+        row("conductor over eon", &[(0.4, &SCHLICK, sharp), (0.6, &EON_EXACT, &[0.8, 0.5, 0.2, 0.7])]),
         row("two conductors", &[(0.5, &METAL, &gold), (0.5, &SCHLICK, sharp)]),
         row("three lobes", &[(0.3, &SCHLICK, wide), (0.2, &MIRROR, &COLOUR), (0.5, &LAMBERT, &COLOUR)]),
         row(

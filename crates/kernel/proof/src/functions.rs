@@ -6,7 +6,7 @@ use crate::{colour, direction, some};
 use core::hint::black_box;
 use gonio_kernel::fresnel::Interface;
 use gonio_kernel::microfacet::Masking;
-use gonio_kernel::{F32x8, Real, Rgb, Vec3, frame, fresnel, math, microfacet, warp};
+use gonio_kernel::{F32x8, Real, Rgb, Vec3, energy, frame, fresnel, math, microfacet, warp};
 
 /// An argument that the optimiser knows nothing about.
 trait Unknown {
@@ -61,6 +61,17 @@ macro_rules! functions {
         type R = $real;
         type Truth = <R as Real>::Mask;
         export! { $real:
+            energy::missing_avg(alpha: R) -> R;
+            energy::albedo(cos: R, alpha: R) -> R;
+            energy::albedo_avg(alpha: R) -> R;
+            energy::multiple_fresnel(f_avg: R, again: R) -> R;
+            energy::scattered_again(alpha: R, missing_o: R, missing_i: R, missing_avg: R) -> R;
+            energy::kulla_conty(missing_o: R, missing_i: R, missing_avg: R, f_ms: R) -> R;
+            energy::effective_alpha(alpha_x: R, alpha_y: R) -> R;
+            energy::turquin(f0: R, missing_o: R) -> R;
+            energy::schlick_avg(f0: R) -> R;
+            energy::f82_avg(f0: R, a: R) -> R;
+            energy::conductor_avg(eta: R, k: R) -> R;
             frame::tangents(z: Vec3<R>) -> (Vec3<R>, Vec3<R>);
             frame::cos_theta(w: Vec3<R>) -> R;
             frame::sin2_theta(w: Vec3<R>) -> R;

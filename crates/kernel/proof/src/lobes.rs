@@ -5,7 +5,10 @@
 use crate::{colour, direction, some};
 use core::hint::black_box;
 use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{self, AnyLobe, Conductor, Dielectric, Lambert, Mirror, Phong, PhongNorm, RoughDielectric};
+use gonio_kernel::lobe::eon::Directional;
+use gonio_kernel::lobe::{
+    self, AnyLobe, Conductor, Dielectric, Eon, Lambert, Mirror, Phong, PhongNorm, RoughDielectric,
+};
 use gonio_kernel::microfacet::{Beckmann, Ggx, Masking, Microfacets};
 use gonio_kernel::{Event, F32x8, Lobe, Real, Rgb, Sample, Value, Vec3, for_each_lobe};
 
@@ -76,6 +79,13 @@ impl<R: Real> Example for Phong<R> {
     fn example() -> Self {
         let norm = if black_box(true) { PhongNorm::Lecture } else { PhongNorm::Lafortune };
         Self { diffuse: colour(0.4), glossy: colour(0.5), exponent: some(30.0), norm }
+    }
+}
+impl<R: Real> Example for Eon<R> {
+    #[inline(always)]
+    fn example() -> Self {
+        let directional = if black_box(true) { Directional::Exact } else { Directional::Fitted };
+        Self { directional, ..Self::new(colour(0.8), some(0.6)) }
     }
 }
 
