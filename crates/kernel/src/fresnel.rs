@@ -2,6 +2,7 @@
 //!
 //! Cosines are those between the direction and the (micro)normal, on wo's side. Results lie in [0, 1].
 
+use crate::energy;
 use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
 
@@ -119,13 +120,17 @@ pub fn schlick<R: Real>(cos_o: R, f0: R) -> R {
 /// Kutz, Hašan & Edmondson 2021, "Novel aspects of the Adobe Standard Material", after Lazányi & Szirmay-Kalos 2005.
 #[inline(always)]
 pub fn f82<R: Real>(cos_o: R, f0: R, tint: R) -> R {
-    const M5: f64 = 7776.0 / 16807.0; // (6/7)⁵
     let m = (R::ONE - cos_o).max(R::ZERO);
     let m2 = m * m;
     let m5 = m2 * m2 * m;
-    let rise = R::ONE - f0;
-    let b = rise.mul_add(R::lit(M5), f0) * (R::ONE - tint) * R::lit(49.0 / (6.0 * M5));
-    (b * cos_o * m).mul_add(-m5, rise.mul_add(m5, f0)).max(R::ZERO)
+    (f82_bend(f0, tint) * cos_o * m).mul_add(-m5, (R::ONE - f0).mul_add(m5, f0)).max(R::ZERO)
+}
+
+/// b of [`f82`]: by how much cosθ(1 − cosθ)⁶ bends Schlick's curve.
+#[inline(always)]
+fn f82_bend<R: Real>(f0: R, tint: R) -> R {
+    const M5: f64 = 7776.0 / 16807.0; // (6/7)⁵
+    (R::ONE - f0).mul_add(R::lit(M5), f0) * (R::ONE - tint) * R::lit(49.0 / (6.0 * M5))
 }
 
 /// What a reflecting interface is made of, per channel.
@@ -168,6 +173,19 @@ impl<R: Real> Fresnel<R> {
                 Rgb::new(f82(cos_o, f0.r, tint.r), f82(cos_o, f0.g, tint.g), f82(cos_o, f0.b, tint.b))
             }
             Self::Dielectric { eta } => Rgb::splat(dielectric(cos_o, eta)),
+        }
+    }
+
+    /// The mean reflectance of each channel over all directions, weighted by the cosine: 2∫F(μ)μ dμ. Of conductors and
+    /// dielectrics by a rule of four points; see [`energy::conductor_avg`].
+    #[inline(always)]
+    pub fn average(&self) -> Rgb<R> {
+        let zip = |a: Rgb<R>, b: Rgb<R>, f: fn(R, R) -> R| Rgb::new(f(a.r, b.r), f(a.g, b.g), f(a.b, b.b));
+        match *self {
+            Self::Conductor { eta, k } => zip(eta, k, energy::conductor_avg),
+            Self::Schlick { f0 } => f0.map(energy::schlick_avg),
+            Self::F82 { f0, tint } => zip(f0, tint, |f0, tint| energy::f82_avg(f0, f82_bend(f0, tint)).max(R::ZERO)),
+            Self::Dielectric { eta } => Rgb::splat(energy::cosine_mean(|cos| dielectric(cos, eta))),
         }
     }
 

@@ -88,6 +88,14 @@ impl<R: Real> Microfacets<R> {
             Self::Beckmann(beckmann) => beckmann.sample_visible(wo, u),
         }
     }
+    /// The widths along tangent and bitangent.
+    #[inline(always)]
+    pub fn widths(&self) -> [R; 2] {
+        match self {
+            Self::Ggx(ggx) => [ggx.alpha_x, ggx.alpha_y],
+            Self::Beckmann(beckmann) => [beckmann.alpha_x, beckmann.alpha_y],
+        }
+    }
     /// Whether both widths lie in [1e-8, 1].
     #[inline(always)]
     pub fn domain(&self) -> R::Mask {

@@ -6,6 +6,7 @@
 //! meets a second opinion here. Clarity before precision: it loses some digits where the kernel does not.
 
 use crate::probe::{Dir, Worth};
+use gonio_kernel::energy;
 use std::f64::consts::PI;
 
 /// Lambert: ρ/π.
@@ -88,6 +89,23 @@ pub(crate) fn separable(p: &[f64], wo: Dir, wi: Dir) -> Worth {
     let worth = schlick(p, wo, wi);
     let ratio = ggx_g1(p[0], p[1], wo) * ggx_g1(p[0], p[1], wi) / ggx_g2(p[0], p[1], wo, wi);
     Worth { f_cos: worth.f_cos.map(|f| f * ratio), ..worth }
+}
+
+/// Schlick's Fresnel with Kulla & Conty's lobe: alpha_x, alpha_y, three f0. The losses are the kernel's (the instrument `walk`
+/// and the tables' own tests hold them to quadrature); the rest is by the book.
+pub(crate) fn kulla_conty(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    let single = schlick(p, wo, wi);
+    let alpha = (p[0] * p[1]).sqrt();
+    let missing = energy::Missing::of(alpha);
+    let (lost_o, lost_i, lost) = (missing.at(wo.z), missing.at(wi.z), energy::missing_avg(alpha));
+    let wide = lost_o * lost_i / (PI * lost);
+    let again = (0.73 * lost_o * lost_i / lost).min(0.6 * alpha);
+    let f_cos = [0, 1, 2].map(|c| {
+        let f_avg = 20.0 / 21.0 * p[2 + c] + 1.0 / 21.0;
+        single.f_cos[c] + f_avg * f_avg * (1.0 - again) / (1.0 - f_avg * again) * wide * wi.z
+    });
+    let multiple = 1.0 / (2.0 * PI * (wi.z + 4.0 * alpha) * (1.0 + 0.25 / alpha).ln());
+    Worth { f_cos, pdf: (1.0 - lost_o) * single.pdf + lost_o * multiple }
 }
 
 /// The reflection of a dielectric: alpha_x, alpha_y, index.

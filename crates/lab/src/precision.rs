@@ -1,10 +1,8 @@
 //! Precision: the `f32` result against the `f64` result of exactly the same numbers.
 //!
-//! **Limit.** The error must not exceed 16 · max(eps · f, s), where s is the largest change of f when one component of one
-//! direction moves by one unit in the last place of `f32`, by differences in `f64`. The longest chain of the kernel, the
-//! rough conductor, rounds 32 times by half an eps: 5 times in r of D, doubled by the square, and twice more; 6 times in
-//! visibility and cosine; 14 times in Fresnel's quotient. (Seen: 8.5 at most in 10⁷ pairs.) A formula that subtracts what
-//! it should not is wrong by hundreds.
+//! **Limit.** The error must not exceed 8 · max(eps · f, s), where s is the largest change of f when one component of one
+//! direction, or one parameter, moves by one unit in the last place of `f32`, by differences in `f64`. A formula that
+//! subtracts what it should not is wrong by hundreds.
 
 use crate::directions::show;
 use crate::finding::{Finding, Run};
@@ -15,7 +13,7 @@ use gonio_kernel::Vec3;
 /// The largest error in units of max(eps f, s).
 pub(crate) fn measure(single: View, run: &Run) -> Finding {
     let mut random = run.random();
-    let mut finding = Finding::at_most(16.0, "max |f32 − f64| / max(eps·f, largest change by one ulp of an input) ≤");
+    let mut finding = Finding::at_most(8.0, "max |f32 − f64| / max(eps·f, largest change by one ulp of an input) ≤");
     let eps = f64::from(f32::EPSILON);
     let mut relative = 0.0_f64;
     for _ in 0..run.by_effort(3_000, 30_000, 300_000) {

@@ -81,7 +81,7 @@ impl<'a> Subject<'a> {
             transmits: row.lobes.iter().any(|(_, species, _)| species.nature.transmits),
             one_event: row.only().is_some_and(|(species, _)| species.nature.discrete && !species.nature.transmits),
             discrete: row.is_discrete(),
-            slack: row.lobes.iter().map(|(weight, species, _)| f64::from(*weight) * species.nature.slack).sum(),
+            slack: row.lobes.iter().map(|(weight, species, p)| f64::from(*weight) * (species.nature.slack)(p)).sum(),
             width: Some(f64::from(row.least_width())),
             empty: row.lobes.iter().all(|(weight, ..)| *weight == 0.0),
         };

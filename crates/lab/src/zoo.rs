@@ -6,6 +6,7 @@
 
 use crate::oracle;
 use crate::probe::{Dir, Worth};
+use gonio_kernel::energy::Compensation;
 use gonio_kernel::fresnel::Fresnel;
 use gonio_kernel::lobe::eon::{self, Directional};
 use gonio_kernel::lobe::{AnyLobe, Conductor, Dielectric, Eon, Lambert, Mirror, Phong, PhongNorm, RoughDielectric};
@@ -46,7 +47,7 @@ pub(crate) struct Nature {
     /// The largest weight of a sample at these numbers.
     pub(crate) weight: fn(&[f32]) -> f64,
     /// How far the albedo may lie above 1, or from its known value, by the model's own admission.
-    pub(crate) slack: f64,
+    pub(crate) slack: fn(&[f32]) -> f64,
     /// What its plots vary.
     pub(crate) varied: Varied,
 }
@@ -82,7 +83,7 @@ impl Nature {
         symmetric: true,
         index: None,
         weight: |_| 1.0,
-        slack: 0.0,
+        slack: |_| 0.0,
         varied: Varied::WIDTH,
     };
     /// The same without microfacets.
@@ -150,7 +151,7 @@ species!(LAMBERT, "lambert", lambert, oracle::lambert, [UNIT, UNIT, UNIT], Natur
 species!(MIRROR, "mirror", mirror, oracle::discrete, [UNIT, UNIT, UNIT], Nature::DISCRETE);
 // Sampled by a mixture of two densities. The closed form of the albedo holds for unit directions, and those of the instruments
 // are unit to half an ulp of f32.
-const EON: Nature = Nature { one_to_one: |_| false, weight: |_| eon::LARGEST_WEIGHT, slack: 1e-7, ..Nature::MATTE };
+const EON: Nature = Nature { one_to_one: |_| false, weight: |_| eon::LARGEST_WEIGHT, slack: |_| 1e-7, ..Nature::MATTE };
 species!(EON_EXACT, "eon-exact", eon_exact, oracle::eon_exact, [UNIT, UNIT, UNIT, UNIT], EON);
 species!(
     EON_FITTED,
@@ -158,13 +159,21 @@ species!(
     eon_fitted,
     oracle::eon_fitted,
     [UNIT, UNIT, UNIT, UNIT],
-    Nature { slack: 2e-3, ..EON } // the fit bounds energy no better
+    Nature { slack: |_| 2e-3, ..EON } // the fit bounds energy no better
 );
 species!(METAL, "conductor", metal, oracle::metal, [ALPHA, ALPHA, ETA, ETA, ETA, EXTINCTION, EXTINCTION, EXTINCTION]);
 species!(SCHLICK, "conductor-schlick", schlick, oracle::schlick, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
 species!(F82, "conductor-f82", f82, oracle::f82, [ALPHA, ALPHA, UNIT, UNIT, UNIT, UNIT, UNIT, UNIT]);
 species!(SEPARABLE, "conductor-separable", separable, oracle::separable, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
 species!(BECKMANN, "conductor-beckmann", beckmann, oracle::beckmann, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
+species!(
+    KULLA_CONTY,
+    "conductor-kulla-conty",
+    kulla_conty,
+    oracle::kulla_conty,
+    [ALPHA, ALPHA, UNIT, UNIT, UNIT],
+    Nature { one_to_one: |_| false, weight: |_| 4.0, slack: compensated, ..Nature::REFLECTOR }
+);
 species!(COAT, "dielectric-reflection", coat, oracle::coat, [ALPHA, ALPHA, INDEX]);
 species!(
     GLASS,
@@ -225,6 +234,14 @@ fn f82<R: Real>(p: &[R]) -> AnyLobe<R> {
 fn separable<R: Real>(p: &[R]) -> AnyLobe<R> {
     Conductor::new(ggx(p), Fresnel::Schlick { f0: rgb(&p[2..]) }).with_masking(Masking::Separable).into()
 }
+fn kulla_conty<R: Real>(p: &[R]) -> AnyLobe<R> {
+    let single = Conductor::new(ggx(p), Fresnel::Schlick { f0: rgb(&p[2..]) });
+    single.with_compensation(Compensation::KullaConty).into()
+}
+/// How far a compensated albedo may exceed 1: by the error of E, or by that of an effective width.
+fn compensated(p: &[f32]) -> f64 {
+    if p[0] == p[1] { 1e-4 } else { 0.04 }
+}
 fn coat<R: Real>(p: &[R]) -> AnyLobe<R> {
     Conductor::new(ggx(p), Fresnel::Dielectric { eta: p[2] }).into()
 }
@@ -280,7 +297,7 @@ impl InZoo for Eon<f32> {
     const SPECIES: &'static [&'static Species] = &[&EON_EXACT, &EON_FITTED];
 }
 impl InZoo for Conductor<f32> {
-    const SPECIES: &'static [&'static Species] = &[&METAL, &SCHLICK, &F82, &SEPARABLE, &BECKMANN, &COAT];
+    const SPECIES: &'static [&'static Species] = &[&METAL, &SCHLICK, &F82, &SEPARABLE, &BECKMANN, &KULLA_CONTY, &COAT];
 }
 impl InZoo for Dielectric<f32> {
     const SPECIES: &'static [&'static Species] = &[&GLASS];
@@ -383,15 +400,24 @@ const COLOUR: [f32; 3] = [0.8, 0.5, 0.2];
 /// Species that return their first three numbers at every angle.
 const RETURNS_RHO: [&str; 2] = ["lambert", "mirror"];
 
+/// What a species returns at every angle, where that is known: Lambert, mirror, exact EON that is white or smooth, a white
+/// isotropic metal whose multiple scattering is given back.
+fn known_albedo(species: &Species, p: &[f32]) -> Option<[f64; 3]> {
+    match species.name {
+        name if RETURNS_RHO.contains(&name) => Some([0, 1, 2].map(|c| f64::from(p[c]))),
+        "eon-exact" if p[3] == 0.0 || p[..3] == WHITE => Some([0, 1, 2].map(|c| f64::from(p[c]))),
+        "conductor-kulla-conty" if p[0] == p[1] && p[2..] == WHITE => Some([1.0; 3]),
+        _ => None,
+    }
+}
+
 /// A row; weight, species and numbers of each lobe.
 pub(crate) fn row(name: impl Into<String>, lobes: &[(f32, &'static Species, &[f32])]) -> Row {
     let lobes: Vec<_> = lobes.iter().map(|(w, s, p)| (*w, *s, p.to_vec())).collect();
-    // Lambert and mirror return ρ at every angle, so what is made of them has a known albedo.
-    // So has exact EON that is white, or smooth.
-    let is_lawful = |s: &Species, p: &[f32]| s.name == "eon-exact" && (p[3] == 0.0 || p[..3] == WHITE);
-    let known = lobes.iter().all(|(_, s, p)| RETURNS_RHO.contains(&s.name) || is_lawful(s, p));
-    let albedo =
-        known.then(|| std::array::from_fn(|c| lobes.iter().map(|(w, _, p)| f64::from(*w) * f64::from(p[c])).sum()));
+    let each: Option<Vec<[f64; 3]>> = lobes.iter().map(|(_, s, p)| known_albedo(s, p)).collect();
+    let albedo = each.map(|each| {
+        std::array::from_fn(|c| lobes.iter().zip(&each).map(|((weight, ..), rho)| f64::from(*weight) * rho[c]).sum())
+    });
     Row { name: name.into(), lobes, albedo }
 }
 
@@ -437,6 +463,11 @@ pub(crate) fn rows() -> Vec<Row> {
         row("beckmann 0.02x0.3 white", &[(1.0, &BECKMANN, &[0.02, 0.3, 1.0, 1.0, 1.0])]),
         row("beckmann 0.4x0.4 colour", &[(1.0, &BECKMANN, &[0.4, 0.4, 0.8, 0.5, 0.2])]),
         row("beckmann 1x1 white", &[(1.0, &BECKMANN, &[1.0, 1.0, 1.0, 1.0, 1.0])]),
+        row("compensated 0.01x0.01 white", &[(1.0, &KULLA_CONTY, &[0.01, 0.01, 1.0, 1.0, 1.0])]),
+        row("compensated 0.2x0.2 white", &[(1.0, &KULLA_CONTY, &[0.2, 0.2, 1.0, 1.0, 1.0])]),
+        row("compensated 1x1 white", &[(1.0, &KULLA_CONTY, &[1.0, 1.0, 1.0, 1.0, 1.0])]),
+        row("compensated 0.6x0.6 gold", &[(1.0, &KULLA_CONTY, &[0.6, 0.6, 0.9, 0.6, 0.3])]),
+        row("compensated 0.3x0.9 white", &[(1.0, &KULLA_CONTY, &[0.3, 0.9, 1.0, 1.0, 1.0])]),
         row("conductor f82", &[(1.0, &F82, &[0.3, 0.2, 0.9, 0.6, 0.4, 0.5, 0.8, 1.0])]),
         row("conductor separable", &[(1.0, &SEPARABLE, &[0.6, 0.3, 0.9, 0.6, 0.4])]),
         row("coat", &[(1.0, &COAT, &[0.2, 0.2, 1.5])]),

@@ -42,12 +42,12 @@ pub(super) fn relative_index<R: Real>(eta: R, wo: Vec3<R>) -> R {
 }
 
 impl<R: Real> Lobe<R> for Dielectric<R> {
-    #[inline(always)]
+    #[inline]
     fn eval(&self, _wo: Vec3<R>, _wi: Vec3<R>) -> Value<R> {
         Value::zero()
     }
 
-    #[inline(always)]
+    #[inline]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R> {
         let (eta, cos_t, at) = self.seen_from(wo);
         let reflected = u[0].lt(at.reflected);
@@ -64,7 +64,7 @@ impl<R: Real> Lobe<R> for Dielectric<R> {
         Sample { wi, event }
     }
 
-    #[inline(always)]
+    #[inline]
     fn discrete(&self, wo: Vec3<R>, event: &Event<R>) -> Value<R> {
         let (eta, _, at) = self.seen_from(wo);
         let pdf = R::select(event.transmitted, at.transmitted, at.reflected);

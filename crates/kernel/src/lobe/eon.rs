@@ -191,7 +191,7 @@ impl<R: Real> Cltc<R> {
 }
 
 impl<R: Real> Lobe<R> for Eon<R> {
-    #[inline(always)]
+    #[inline]
     fn eval(&self, wo: Vec3<R>, wi: Vec3<R>) -> Value<R> {
         let r = self.roughness;
         let s = wo.x.mul_add(wi.x, wo.y * wi.y);
@@ -210,7 +210,7 @@ impl<R: Real> Lobe<R> for Eon<R> {
         Value { f_cos, pdf }.or_zero(both_above(wo, wi))
     }
 
-    #[inline(always)]
+    #[inline]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R> {
         let sphere = sample_uniform_sphere([u[1], u[2]]);
         let uniform = Vec3::new(sphere.x, sphere.y, sphere.z.abs());

@@ -55,7 +55,7 @@ impl<R: Real> Phong<R> {
 }
 
 impl<R: Real> Lobe<R> for Phong<R> {
-    #[inline(always)]
+    #[inline]
     fn eval(&self, wo: Vec3<R>, wi: Vec3<R>) -> Value<R> {
         let apart = Vec3::new(wo.x + wi.x, wo.y + wi.y, wo.z - wi.z);
         let q = apart.length2() * R::lit(0.5);
@@ -72,7 +72,7 @@ impl<R: Real> Lobe<R> for Phong<R> {
         Value { f_cos, pdf: (R::ONE - p).mul_add(cosine, p * density) }.or_zero(both_above(wo, wi))
     }
 
-    #[inline(always)]
+    #[inline]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R> {
         let diffuse = u[0].lt(R::ONE - self.probability_glossy());
         // cos = (1 − u)^(1/(α + 1)), and 1 − cos without cancellation.

@@ -69,7 +69,7 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
         Prepared([self.microfacets.smith_length(wo), relative_index(self.eta, wo), R::ZERO, R::ZERO])
     }
 
-    #[inline(always)]
+    #[inline]
     fn eval_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
         let Prepared([s_o, eta, ..]) = *prepared;
         let (wi, wo) = (upright(wo, wi), upright(wo, wo));
@@ -111,7 +111,7 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
         Value { f_cos, pdf }.or_zero(ok & (faces | !through))
     }
 
-    #[inline(always)]
+    #[inline]
     fn sample_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
         let Prepared([s_o, eta, ..]) = *prepared;
         let up = upright(wo, wo);
@@ -139,7 +139,7 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn discrete(&self, _wo: Vec3<R>, event: &Event<R>) -> Value<R> {
         // No interface: no compression of radiance either.
         Value { f_cos: Rgb::splat(R::ONE), pdf: R::ONE }.or_zero(event.discrete & !event.failed)

@@ -9,13 +9,13 @@ use super::{exp, ln, polynomial};
 use crate::real::{Precision, Real};
 
 /// erf x: at most 2 ulp; ±1 of ±∞, NaN of NaN.
-#[inline(always)]
+#[inline]
 pub fn erf<R: Real>(x: R) -> R {
     erf_and_exp(x).0
 }
 
 /// erf x and exp(−x²), which costs nothing more.
-#[inline(always)]
+#[inline]
 pub(crate) fn erf_and_exp<R: Real>(x: R) -> (R, R) {
     let z = x * x;
     let ax = x.abs();
@@ -27,7 +27,7 @@ pub(crate) fn erf_and_exp<R: Real>(x: R) -> (R, R) {
 
 /// X(x) = (√π/2) exp(x²) erfc(x) for x ≥ 0, constant from 4.5 on in `f32`, from 6.5 in `f64`, where exp(−x²) ends what it
 /// can add to 1. Its error times exp(−x²) is below a third of an ulp of 1, and that of X itself below 1e-3 of X (1e-6).
-#[inline(always)]
+#[inline]
 pub(crate) fn scaled_erfc<R: Real>(x: R) -> R {
     let last = match R::PRECISION {
         Precision::Single => 4.5,
@@ -37,7 +37,7 @@ pub(crate) fn scaled_erfc<R: Real>(x: R) -> R {
 }
 
 /// The y with erf y = x, for |x| < 1: at most 6 ulp in `f32`, 4 in `f64`.
-#[inline(always)]
+#[inline]
 pub fn erf_inv<R: Real>(x: R) -> R {
     let w = -ln((R::ONE - x) * (R::ONE + x));
     let root = w.max(R::ZERO).sqrt();

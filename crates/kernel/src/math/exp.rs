@@ -41,7 +41,7 @@ pub fn flushed_square<R: Real>(root: R, factor: R) -> R {
 }
 
 /// eˣ − 1 without cancellation: at most 2 ulp. −1 far below 0, +∞ beyond the largest number, NaN of NaN.
-#[inline(always)]
+#[inline]
 pub fn exp_m1<R: Real>(x: R) -> R {
     let [_, largest] = range::<R>();
     // At −40 even f64 cannot tell the result from −1.

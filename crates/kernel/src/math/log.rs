@@ -8,7 +8,7 @@ use super::polynomial;
 use crate::real::{Precision, Real};
 
 /// ln x: at most 2 ulp, denormal numbers included. −∞ of 0, NaN below and of NaN, +∞ of +∞.
-#[inline(always)]
+#[inline]
 pub fn ln<R: Real>(x: R) -> R {
     let (m, k) = split(x);
     let f = m - R::ONE;
@@ -16,7 +16,7 @@ pub fn ln<R: Real>(x: R) -> R {
 }
 
 /// ln(1 + x) without cancellation: at most 2 ulp. −∞ of −1, NaN below and of NaN, +∞ of +∞.
-#[inline(always)]
+#[inline]
 pub fn ln_1p<R: Real>(x: R) -> R {
     let u = R::ONE + x;
     let (m, k) = u.split_exponent();
@@ -31,7 +31,7 @@ pub fn ln_1p<R: Real>(x: R) -> R {
 
 /// xʸ for x ≥ 0 and finite y: at most 8 ulp. 0⁰ = 1, 0 to a negative power is +∞. Flushed to exactly 0 below the least
 /// normal number, as [`exp`](super::exp) is. NaN below 0.
-#[inline(always)]
+#[inline]
 pub fn pow<R: Real>(x: R, y: R) -> R {
     let (high, low) = ln_of_two_words(x);
     // y(high + low) again in two words.

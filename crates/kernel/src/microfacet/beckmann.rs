@@ -37,7 +37,7 @@ pub struct Beckmann<R> {
 
 impl<R: Real> Beckmann<R> {
     /// D of the half vector h = wo + wi with h.z ≥ 0, not normalised, with |h|² given \[1/sr\].
-    #[inline(always)]
+    #[inline]
     pub fn d(&self, h: Vec3<R>, h_length2: R) -> R {
         // Both directions nearly in the surface and opposite: the squares of h would underflow, D does not depend on |h|.
         let tiny = h_length2.lt(R::lit(1e-12));
@@ -59,7 +59,7 @@ impl<R: Real> Beckmann<R> {
     }
 
     /// s(w) = |w_z|(1 + 2Λ(w)): |w_z| seen from above, t/√π in the horizon.
-    #[inline(always)]
+    #[inline]
     pub fn smith_length(&self, w: Vec3<R>) -> R {
         let x = self.alpha_x * w.x;
         let y = self.alpha_y * w.y;
@@ -70,7 +70,7 @@ impl<R: Real> Beckmann<R> {
     }
 
     /// A microfacet normal, unit, distributed as those visible from wo (above the surface).
-    #[inline(always)]
+    #[inline]
     pub fn sample_visible(&self, wo: Vec3<R>, u: [R; 2]) -> Vec3<R> {
         let (x, y) = (self.alpha_x * wo.x, self.alpha_y * wo.y);
         let length = x.mul_add(x, y * y).sqrt();
