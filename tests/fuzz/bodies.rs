@@ -5,7 +5,7 @@
 //! the file has. It returns what happened, in words, so that runs can count how much of a parser they reach.
 
 use gonio_tracer::image::{ImageError, Picture, read_exr};
-use gonio_tracer::scene::{Color, FresnelSpec, Material, Mesh, Model, Scene, SceneError, Sky};
+use gonio_tracer::scene::{Color, FresnelSpec, Material, Mesh, MicrofacetSpec, Model, Scene, SceneError, Sky};
 use gonio_tracer::texture::Texture;
 use gonio_tracer::{World, hdr};
 use std::fs;
@@ -281,17 +281,39 @@ fn assert_material(material: &Material, textures: usize) {
     assert!(rgb(material.emission).iter().all(|c| (0.0..=1e6).contains(c)), "{material:?}");
     for lobe in &material.lobes {
         assert!(unit(lobe.weight), "{material:?}");
+        let index = |ior: f32| assert!((0.01..=100.0).contains(&ior), "{material:?}");
+        let widths = |spec: MicrofacetSpec| {
+            let inside = |alpha: &f32| (1e-8..=1.0).contains(alpha);
+            assert!([spec.alpha_x, spec.alpha_y].iter().all(inside), "{material:?}");
+        };
         let color = match lobe.model {
             Model::Diffuse { base_color } => Some(base_color),
+            Model::Eon { base_color, roughness, .. } => {
+                assert!(unit(roughness), "{material:?}");
+                Some(base_color)
+            }
             Model::Mirror { reflectance } => Some(reflectance),
-            Model::Conductor { fresnel, alpha_x, alpha_y } => {
-                assert!([alpha_x, alpha_y].iter().all(|alpha| (1e-4..=1.0).contains(alpha)), "{material:?}");
+            Model::Phong { diffuse, glossy, exponent, .. } => {
+                assert!(rgb(glossy).into_iter().all(unit) && (0.0..=1e7).contains(&exponent), "{material:?}");
+                Some(diffuse)
+            }
+            Model::Dielectric { ior, microfacets } => {
+                index(ior);
+                microfacets.into_iter().for_each(widths);
+                None
+            }
+            Model::Conductor { fresnel, microfacets, .. } => {
+                widths(microfacets);
                 match fresnel {
                     FresnelSpec::Conductor { eta, k } => {
                         assert!(rgb(eta).iter().all(|x| x.is_finite() && *x > 0.0), "{material:?}");
                         assert!(rgb(k).iter().all(|x| x.is_finite() && *x >= 0.0), "{material:?}");
                     }
                     FresnelSpec::Schlick { f0 } => assert!(rgb(f0).into_iter().all(unit), "{material:?}"),
+                    FresnelSpec::F82 { f0, tint } => {
+                        assert!(rgb(f0).into_iter().chain(rgb(tint)).all(unit), "{material:?}");
+                    }
+                    FresnelSpec::Dielectric { ior } => index(ior),
                 }
                 None
             }

@@ -37,6 +37,7 @@ pub mod fresnel;
 mod lanes;
 pub mod lobe;
 pub mod math;
+pub mod metal;
 pub mod microfacet;
 mod real;
 mod rgb;

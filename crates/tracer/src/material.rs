@@ -3,11 +3,14 @@
 //! Materials are ordered by variant, the sequence of their lobes' models, so that a queue sorted by material has equal
 //! variants side by side and eight paths can be shaded at once even if no two share a material.
 
-use crate::scene::{Color, FresnelSpec, LobeSpec, Material, Model, Scene};
+use crate::scene::{
+    Color, Compensation, Directional, Distribution, FresnelSpec, LobeSpec, Masking, Material, MicrofacetSpec, Model,
+    PhongNorm, Scene,
+};
 use crate::texture::Texture;
 use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{AnyLobe, Conductor, Lambert, Mirror};
-use gonio_kernel::microfacet::Ggx;
+use gonio_kernel::lobe::{AnyLobe, Conductor, Dielectric, Eon, Lambert, Mirror, Phong, RoughDielectric};
+use gonio_kernel::microfacet::{Beckmann, Ggx, Microfacets};
 use gonio_kernel::{F32x8, Real, Rgb, Surface};
 
 /// A material, and what the queue needs to know of it.
@@ -23,31 +26,49 @@ pub(crate) struct PreparedMaterial {
     pub(crate) textured: bool,
     pub(crate) anisotropic: bool,
     pub(crate) discrete: bool,
+    pub(crate) transmits: bool,
+}
+
+fn is_anisotropic(model: &Model) -> bool {
+    match model {
+        Model::Conductor { microfacets: m, .. } | Model::Dielectric { microfacets: Some(m), .. } => {
+            m.alpha_x != m.alpha_y
+        }
+        _ => false,
+    }
 }
 
 impl PreparedMaterial {
     /// The materials in the order of their variants, and where each of the scene's went.
     pub(crate) fn prepare(scene: &Scene) -> (Vec<Self>, Vec<u32>) {
-        let pattern = |m: &Material| m.lobes.iter().map(|l| model_number(&l.model)).collect::<Vec<_>>();
+        let pattern = |m: &Material| m.lobes.iter().map(|l| taken_apart(&l.model).0).collect::<Vec<_>>();
+        // Kinds have no order of their own: variants are numbered as the scene first shows them.
+        let mut variants: Vec<Vec<Kind>> = Vec::new();
+        let mut number = |m: &Material| {
+            let pattern = pattern(m);
+            let known = variants.iter().position(|v| *v == pattern);
+            known.unwrap_or_else(|| {
+                variants.push(pattern);
+                variants.len() - 1
+            })
+        };
+        let variant_of: Vec<usize> = scene.materials.iter().map(&mut number).collect();
         let mut by_variant: Vec<usize> = (0..scene.materials.len()).collect();
-        by_variant.sort_by_key(|&i| pattern(&scene.materials[i])); // stable: the scene's order within a variant
+        by_variant.sort_by_key(|&i| variant_of[i]); // stable: the scene's order within a variant
         let mut order = vec![0; scene.materials.len()];
         let mut prepared: Vec<Self> = Vec::with_capacity(scene.materials.len());
         for (place, &i) in by_variant.iter().enumerate() {
             order[i] = place as u32;
             let spec = scene.materials[i].clone();
-            let variant = match prepared.last() {
-                Some(last) => last.variant + u32::from(pattern(&last.spec) != pattern(&spec)),
-                None => 0,
-            };
             prepared.push(Self {
-                variant,
+                variant: variant_of[i] as u32,
                 surface: constant_surface(&spec),
                 emission: spec.emission,
                 two_sided: spec.two_sided,
                 textured: spec.lobes.iter().any(|l| matches!(color_of(&l.model), Some(Color::Texture { .. }))),
-                anisotropic: spec.lobes.iter().any(|l| widths(l)[0] != widths(l)[1]),
-                discrete: spec.lobes.iter().any(|l| matches!(l.model, Model::Mirror { .. })),
+                anisotropic: spec.lobes.iter().any(|l| is_anisotropic(&l.model)),
+                discrete: spec.lobes.iter().any(|l| matches!(l.model, Model::Mirror { .. } | Model::Dielectric { .. })),
+                transmits: spec.lobes.iter().any(|l| matches!(l.model, Model::Dielectric { .. })),
                 spec,
             });
         }
@@ -66,7 +87,7 @@ pub fn constant_surface<R: Real>(material: &Material) -> Option<Surface<R>> {
     material.lobes.iter().all(constant).then(|| {
         assemble(
             material,
-            |slot, read| R::lit(f64::from(read(&material.lobes[slot]))),
+            |slot, i| R::lit(f64::from(number_of(&material.lobes[slot], i))),
             |slot| match color_of(&material.lobes[slot].model) {
                 Some(Color::Constant(c)) => c.map(|x| R::lit(f64::from(x))),
                 _ => Rgb::zero(),
@@ -80,7 +101,7 @@ pub(crate) fn lane_surface(materials: [&Material; 8], textures: &[Texture], uv: 
     let [u, v] = uv.map(F32x8::to_array);
     assemble(
         materials[0],
-        |slot, read| F32x8::new(materials.map(|m| read(&m.lobes[slot]))),
+        |slot, i| F32x8::new(materials.map(|m| number_of(&m.lobes[slot], i))),
         |slot| {
             let colors: [Rgb<f32>; 8] =
                 std::array::from_fn(|lane| match color_of(&materials[lane].lobes[slot].model) {
@@ -93,68 +114,116 @@ pub(crate) fn lane_surface(materials: [&Material; 8], textures: &[Texture], uv: 
     )
 }
 
-/// The one place where scene models become kernel lobes: `number(slot, read)` reads a number of the slot's lobe, and
+/// What decides which code a lobe runs: equal for lobes that can share a lane batch. All else about it are numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Diffuse,
+    Eon(Directional),
+    Mirror,
+    Phong(PhongNorm),
+    Conductor { distribution: Distribution, masking: Masking, fresnel: FresnelKind, compensation: Compensation },
+    Dielectric,
+    RoughDielectric { distribution: Distribution, masking: Masking },
+}
+
+/// Which Fresnel's equations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum FresnelKind {
+    Conductor,
+    Schlick,
+    F82,
+    Dielectric,
+}
+
+/// The most numbers that a lobe has.
+const NUMBERS: usize = 8;
+
+/// A model as its kind, its colour and its numbers: widths first, then what follows in the kernel's lobe.
+fn taken_apart(model: &Model) -> (Kind, Option<Color>, [f32; NUMBERS]) {
+    let numbers = |given: &[f32]| {
+        let mut all = [0.0; NUMBERS];
+        all[..given.len()].copy_from_slice(given);
+        all
+    };
+    match *model {
+        Model::Diffuse { base_color } => (Kind::Diffuse, Some(base_color), numbers(&[])),
+        Model::Eon { base_color, roughness, directional } => {
+            (Kind::Eon(directional), Some(base_color), numbers(&[roughness]))
+        }
+        Model::Mirror { reflectance } => (Kind::Mirror, Some(reflectance), numbers(&[])),
+        Model::Phong { diffuse, glossy: s, exponent, norm } => {
+            (Kind::Phong(norm), Some(diffuse), numbers(&[s.r, s.g, s.b, exponent]))
+        }
+        Model::Conductor { fresnel, microfacets, compensation } => {
+            let MicrofacetSpec { distribution, masking, alpha_x: x, alpha_y: y } = microfacets;
+            let (fresnel, p) = match fresnel {
+                FresnelSpec::Conductor { eta: n, k } => (FresnelKind::Conductor, [x, y, n.r, n.g, n.b, k.r, k.g, k.b]),
+                FresnelSpec::Schlick { f0: f } => (FresnelKind::Schlick, numbers(&[x, y, f.r, f.g, f.b])),
+                FresnelSpec::F82 { f0: f, tint: t } => (FresnelKind::F82, [x, y, f.r, f.g, f.b, t.r, t.g, t.b]),
+                FresnelSpec::Dielectric { ior } => (FresnelKind::Dielectric, numbers(&[x, y, ior])),
+            };
+            (Kind::Conductor { distribution, masking, fresnel, compensation }, None, p)
+        }
+        Model::Dielectric { ior, microfacets: None } => (Kind::Dielectric, None, numbers(&[ior])),
+        Model::Dielectric { ior, microfacets: Some(microfacets) } => {
+            let MicrofacetSpec { distribution, masking, alpha_x, alpha_y } = microfacets;
+            (Kind::RoughDielectric { distribution, masking }, None, numbers(&[alpha_x, alpha_y, ior]))
+        }
+    }
+}
+
+/// The one place where scene models become kernel lobes.
+fn put_together<R: Real>(kind: Kind, color: Rgb<R>, p: [R; NUMBERS]) -> AnyLobe<R> {
+    let rgb = |at: usize| Rgb::new(p[at], p[at + 1], p[at + 2]);
+    let microfacets = |distribution| -> Microfacets<R> {
+        match distribution {
+            Distribution::Ggx => Ggx { alpha_x: p[0], alpha_y: p[1] }.into(),
+            Distribution::Beckmann => Beckmann { alpha_x: p[0], alpha_y: p[1] }.into(),
+        }
+    };
+    match kind {
+        Kind::Diffuse => Lambert::new(color).into(),
+        Kind::Eon(directional) => Eon { directional, ..Eon::new(color, p[0]) }.into(),
+        Kind::Mirror => Mirror::new(color).into(),
+        Kind::Phong(norm) => Phong { diffuse: color, glossy: rgb(0), exponent: p[3], norm }.into(),
+        Kind::Conductor { distribution, masking, fresnel, compensation } => {
+            let fresnel = match fresnel {
+                FresnelKind::Conductor => Fresnel::Conductor { eta: rgb(2), k: rgb(5) },
+                FresnelKind::Schlick => Fresnel::Schlick { f0: rgb(2) },
+                FresnelKind::F82 => Fresnel::F82 { f0: rgb(2), tint: rgb(5) },
+                FresnelKind::Dielectric => Fresnel::Dielectric { eta: p[2] },
+            };
+            let conductor = Conductor::new(microfacets(distribution), fresnel);
+            conductor.with_masking(masking).with_compensation(compensation).into()
+        }
+        Kind::Dielectric => Dielectric::new(p[0]).into(),
+        Kind::RoughDielectric { distribution, masking } => {
+            RoughDielectric::new(microfacets(distribution), p[2]).with_masking(masking).into()
+        }
+    }
+}
+
+/// A surface of the pattern's kinds: `number(slot, i)` is number i of the slot's lobe, the weight if i is [`NUMBERS`], and
 /// `color(slot)` its colour.
 fn assemble<R: Real>(
     pattern: &Material,
-    number: impl Fn(usize, &dyn Fn(&LobeSpec) -> f32) -> R,
+    number: impl Fn(usize, usize) -> R,
     color: impl Fn(usize) -> Rgb<R>,
 ) -> Surface<R> {
     let mut surface = Surface::black();
     for (slot, lobe) in pattern.lobes.iter().enumerate() {
-        let weight = number(slot, &|l| l.weight);
-        let rgb = |read: &dyn Fn(&LobeSpec) -> Rgb<f32>| {
-            Rgb::new(number(slot, &|l| read(l).r), number(slot, &|l| read(l).g), number(slot, &|l| read(l).b))
-        };
-        let any: AnyLobe<R> = match &lobe.model {
-            Model::Diffuse { .. } => Lambert::new(color(slot)).into(),
-            Model::Mirror { .. } => Mirror::new(color(slot)).into(),
-            Model::Conductor { fresnel, .. } => {
-                let ggx = Ggx { alpha_x: number(slot, &|l| widths(l)[0]), alpha_y: number(slot, &|l| widths(l)[1]) };
-                let fresnel = match fresnel {
-                    FresnelSpec::Conductor { .. } => {
-                        Fresnel::Conductor { eta: rgb(&|l| fresnel_of(l)[0]), k: rgb(&|l| fresnel_of(l)[1]) }
-                    }
-                    FresnelSpec::Schlick { .. } => Fresnel::Schlick { f0: rgb(&|l| fresnel_of(l)[0]) },
-                };
-                Conductor::new(ggx, fresnel).into()
-            }
-        };
-        surface = surface.with(weight, any);
+        let kind = taken_apart(&lobe.model).0;
+        let numbers = std::array::from_fn(|i| number(slot, i));
+        surface = surface.with(number(slot, NUMBERS), put_together(kind, color(slot), numbers));
     }
     surface
 }
 
-/// Equal for lobes that can share a lane batch.
-fn model_number(model: &Model) -> u32 {
-    match model {
-        Model::Diffuse { .. } => 0,
-        Model::Mirror { .. } => 1,
-        Model::Conductor { fresnel: FresnelSpec::Conductor { .. }, .. } => 2,
-        Model::Conductor { fresnel: FresnelSpec::Schlick { .. }, .. } => 3,
-    }
+/// Number i of a lobe as [`assemble`] asks for it.
+fn number_of(lobe: &LobeSpec, i: usize) -> f32 {
+    taken_apart(&lobe.model).2.get(i).copied().unwrap_or(lobe.weight)
 }
 
 fn color_of(model: &Model) -> Option<Color> {
-    match model {
-        Model::Diffuse { base_color: c } | Model::Mirror { reflectance: c } => Some(*c),
-        Model::Conductor { .. } => None,
-    }
-}
-
-/// α_x and α_y; equal for lobes that have none.
-fn widths(lobe: &LobeSpec) -> [f32; 2] {
-    match lobe.model {
-        Model::Conductor { alpha_x, alpha_y, .. } => [alpha_x, alpha_y],
-        _ => [1.0; 2],
-    }
-}
-
-/// η and k, or f0 twice; black for lobes that have none.
-fn fresnel_of(lobe: &LobeSpec) -> [Rgb<f32>; 2] {
-    match lobe.model {
-        Model::Conductor { fresnel: FresnelSpec::Conductor { eta, k }, .. } => [eta, k],
-        Model::Conductor { fresnel: FresnelSpec::Schlick { f0 }, .. } => [f0, f0],
-        _ => [Rgb::zero(); 2],
-    }
+    taken_apart(model).1
 }

@@ -23,6 +23,8 @@ pub struct Plan {
     pub one_sided: bool,
     /// Some lobe is discrete.
     pub discrete: bool,
+    /// Some material lets light through.
+    pub transmission: bool,
 }
 
 impl Plan {
@@ -36,10 +38,11 @@ impl Plan {
             tangents: true,
             one_sided: true,
             discrete: true,
+            transmission: true,
         }
     }
 
-    fn named(&self) -> [(bool, &'static str); 7] {
+    fn named(&self) -> [(bool, &'static str); 8] {
         [
             (self.area_lights, "area lights"),
             (self.environment, "environment"),
@@ -48,6 +51,7 @@ impl Plan {
             (self.tangents, "tangents"),
             (self.one_sided, "one-sided materials"),
             (self.discrete, "mirrors"),
+            (self.transmission, "transmission"),
         ]
     }
 }

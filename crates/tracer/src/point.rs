@@ -42,7 +42,7 @@ pub(crate) struct ShadingPoints {
     pub(crate) point: SurfacePoint,
     /// Geometric normal, unit, on wo's side.
     pub(crate) normal: Vec3<F32x8>,
-    /// Shading frame, on wo's side.
+    /// Shading frame: on wo's side, or, if light passes through, on the side that the winding faces.
     pub(crate) frame: Frame<F32x8>,
     /// Where the ray came from the side that the winding faces.
     pub(crate) front: Mask8,
@@ -123,6 +123,17 @@ impl ShadingPoints {
             }
         }
         let material = each_lane(|l| triangles[l].material);
+        if plan.transmission {
+            // An interface has an inside, behind its winding: seen from there, wo is below the surface.
+            let transmits = (0..F32x8::LANES)
+                .fold(0, |bits, l| bits | u32::from(world.materials[material[l] as usize].transmits) << l);
+            let turn = Mask8::from_bits(transmits) & !front;
+            frame = Frame {
+                x: frame.x,
+                y: Vec3::select(turn, -frame.y, frame.y),
+                z: Vec3::select(turn, -frame.z, frame.z),
+            };
+        }
         Self {
             point: SurfacePoint::new(&corners, bary),
             normal,

@@ -155,8 +155,8 @@ pub(crate) fn hit(
         return 0;
     }
 
-    let closure = Closure::new(surface, points.frame.to_local(wo));
-    let origin = points.point.off_plane(points.normal);
+    let local = points.frame.to_local(wo);
+    let closure = Closure::new(surface, local);
 
     let lights = &ctx.world.lights;
     if (ctx.plan.area_lights || ctx.plan.environment) && ctx.techniques != Techniques::Scattering {
@@ -173,7 +173,7 @@ pub(crate) fn hit(
             }
             let place = [u.unit(2), u.unit(3)];
             let asked = match (kind, lights.shining_sky()) {
-                (false, _) => ask_emitter(ctx, origin, u.0[1], rest, place),
+                (false, _) => ask_emitter(ctx, &points, u.0[1], rest, place),
                 (true, None) => continue,
                 (true, Some(PreparedSky::Constant(sky))) => ask_sky(*sky, &points, place, p_environment),
                 (true, Some(PreparedSky::Map(map))) => {
@@ -181,17 +181,18 @@ pub(crate) fn hit(
                     ask_map(map, &u, &place, p_environment)
                 }
             };
-            let value = closure.eval(points.frame.to_local(asked.wi));
+            let wi = points.frame.to_local(asked.wi);
+            let value = closure.eval(wi);
             let weight = ctx.techniques.weight(Techniques::Lights, asked.pdf, value.pdf) / asked.pdf;
             let arriving = incoming.throughput * value.f_cos * asked.radiance * weight;
-            let above = points.normal.dot(asked.wi).gt(F32x8::ZERO);
-            let mask = mask & asked.mask & above & arriving.largest().gt(F32x8::ZERO);
+            let (origin, right_side) = leaving(ctx, &points, asked.wi, local.z * wi.z);
+            let mask = mask & asked.mask & right_side & arriving.largest().gt(F32x8::ZERO);
             if mask.any() {
                 shadow.push(mask, (origin, asked.wi, asked.t_max), arriving, &incoming.path);
             }
         }
     }
-    scatter(ctx, depth, live, &incoming, &points, &closure, origin, next);
+    scatter(ctx, depth, live, &incoming, &points, &closure, local, next);
     live.to_bits().count_ones()
 }
 
@@ -242,6 +243,20 @@ fn receive_emission(
     gathered.add(&incoming.path, mask, incoming.throughput * emission * incoming.weight(ctx.techniques, pdf_light));
 }
 
+/// Where a ray in the direction wi starts, and whether it leaves on the side on which the closure scattered it: `sides` is the
+/// product of the local cosines. Reflection or transmission is decided by the geometric side; light that the shading normal
+/// reflects into the surface, or refracts out of it, carries nothing.
+#[inline(always)]
+fn leaving(ctx: &Context, points: &ShadingPoints, wi: Vec3<F32x8>, sides: F32x8) -> (Vec3<F32x8>, Mask8) {
+    let above = points.normal.dot(wi).gt(F32x8::ZERO);
+    if !ctx.plan.transmission {
+        return (points.point.off_plane(points.normal), above);
+    }
+    let through = sides.lt(F32x8::ZERO);
+    let normal = Vec3::select(above, points.normal, -points.normal);
+    (points.point.off_plane(normal), (above & !through) | (!above & through))
+}
+
 /// A direction in which light is asked for.
 struct Asked {
     wi: Vec3<F32x8>,
@@ -280,11 +295,18 @@ fn ask_map(map: &EnvironmentMap, toss: &Random4, place: &Random4, probability: F
 
 /// A uniform point of an emitting triangle chosen by power.
 #[inline(always)]
-fn ask_emitter(ctx: &Context, origin: Vec3<F32x8>, slot: U32x8, toss: F32x8, place: [F32x8; 2]) -> Asked {
+fn ask_emitter(ctx: &Context, points: &ShadingPoints, slot: U32x8, toss: F32x8, place: [F32x8; 2]) -> Asked {
     let emitters = ctx.world.lights.pick(slot, toss);
     let normal = emitters.normal;
     let target = SurfacePoint::new(&emitters.corners, sample_uniform_triangle(place)).off_plane(normal);
-    let to = target - origin;
+    // The ray starts on the side where the light is.
+    let beside = points.normal.dot(target - points.point.position).lt(F32x8::ZERO);
+    let start = if ctx.plan.transmission {
+        points.point.off_plane(Vec3::select(beside, -points.normal, points.normal))
+    } else {
+        points.point.off_plane(points.normal)
+    };
+    let to = target - start;
     let distance2 = to.length2();
     let distance = distance2.sqrt();
     let wi = to * distance.recip();
@@ -308,7 +330,7 @@ fn scatter(
     incoming: &Incoming,
     points: &ShadingPoints,
     closure: &Closure<F32x8>,
-    origin: Vec3<F32x8>,
+    local: Vec3<F32x8>,
     next: &mut Queue,
 ) {
     let u = ctx.sampler.draw(incoming.pixel, incoming.sample, depth, Purpose::Scatter);
@@ -322,9 +344,8 @@ fn scatter(
         continuous = live & !sample.event.discrete;
     }
     let wi = points.frame.to_world(sample.wi);
-    // Reflection is decided by the geometric side: a direction into the surface carries nothing.
-    let above = points.normal.dot(wi).gt(F32x8::ZERO);
-    let mut alive = live & !sample.event.failed & above & value.pdf.gt(F32x8::ZERO);
+    let (origin, right_side) = leaving(ctx, points, wi, local.z * sample.wi.z);
+    let mut alive = live & !sample.event.failed & right_side & value.pdf.gt(F32x8::ZERO);
     let mut throughput = incoming.throughput * value.f_cos * value.pdf.recip();
     alive = alive & throughput.largest().gt(F32x8::ZERO);
     if ctx.russian_roulette && depth + 1 >= ROULETTE_FROM {

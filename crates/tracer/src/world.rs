@@ -104,6 +104,7 @@ impl World {
             tangents: false,
             one_sided: materials.iter().any(|m| !m.two_sided),
             discrete: materials.iter().any(|m| m.discrete),
+            transmission: materials.iter().any(|m| m.transmits),
         };
         for mesh in meshes.iter() {
             let anisotropic = mesh.materials.iter().any(|&m| materials[order[m as usize] as usize].anisotropic);

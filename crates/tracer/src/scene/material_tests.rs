@@ -26,7 +26,7 @@ fn a_conductor_takes_any_one_spelling_of_its_width() {
     let widths = |text: &str| {
         let material = read_text(&format!("type = \"conductor\"\nf0 = [0.9, 0.6, 0.3]\n{text}")).unwrap();
         match material.lobes[0].model {
-            Model::Conductor { alpha_x, alpha_y, .. } => (alpha_x, alpha_y),
+            Model::Conductor { microfacets, .. } => (microfacets.alpha_x, microfacets.alpha_y),
             ref other => panic!("{other:?}"),
         }
     };
@@ -66,11 +66,11 @@ fn refusals_name_the_line_and_what_would_be_right() {
     let cases = [
         (
             "type = \"conductor\"\nf0 = 1\neta = 1\nk = 1",
-            "dir/brass.toml:1: a conductor needs either \"f0\" or both \"eta\" and \"k\"",
+            "dir/brass.toml:1: a conductor needs one of \"f0\" (with \"f82\" if wanted), both \"eta\" and \"k\", \"metal\", or \"ior\"",
         ),
         (
             "type = \"conductor\"\neta = 1",
-            "dir/brass.toml:1: a conductor needs either \"f0\" or both \"eta\" and \"k\"",
+            "dir/brass.toml:1: a conductor needs one of \"f0\" (with \"f82\" if wanted), both \"eta\" and \"k\", \"metal\", or \"ior\"",
         ),
         (
             "type = \"conductor\"\nf0 = 1\nalpha = 0.1\nroughness = 0.1",
@@ -102,5 +102,48 @@ fn refusals_name_the_line_and_what_would_be_right() {
     ];
     for (text, expected) in cases {
         assert_eq!(refused(text), expected);
+    }
+}
+
+#[test]
+fn every_type_has_defaults_and_its_own_keys() {
+    let model = |text: &str| read_text(text).unwrap_or_else(|error| panic!("{text}: {error}")).lobes[0].model.clone();
+    assert!(matches!(
+        model("type = \"eon\"\nalbedo = \"fitted\""),
+        Model::Eon { directional: Directional::Fitted, .. }
+    ));
+    assert!(matches!(model("type = \"phong\""), Model::Phong { norm: PhongNorm::Lafortune, .. }));
+    assert!(matches!(model("type = \"dielectric\""), Model::Dielectric { ior: 1.5, microfacets: None }));
+    let rough = model("type = \"dielectric\"\nior = 1.33\nroughness = 0.5\ndistribution = \"beckmann\"");
+    let Model::Dielectric { microfacets: Some(microfacets), .. } = rough else { panic!("{rough:?}") };
+    assert_eq!((microfacets.distribution, microfacets.alpha_x), (Distribution::Beckmann, 0.25));
+    let gold = model("type = \"conductor\"\nmetal = \"gold\"\ncompensation = \"kulla-conty\"");
+    assert!(matches!(
+        gold,
+        Model::Conductor { fresnel: FresnelSpec::Conductor { .. }, compensation: Compensation::KullaConty, .. }
+    ));
+    assert!(matches!(
+        model("type = \"conductor\"\nf0 = 0.9\nf82 = 0.5\nalpha = 1e-8"),
+        Model::Conductor { fresnel: FresnelSpec::F82 { .. }, .. }
+    ));
+}
+
+#[test]
+fn what_a_type_cannot_be_is_refused_with_what_it_can() {
+    for (text, says) in [
+        ("type = \"conductor\"\nmetal = \"gould\"", "the metal \"gould\" is not known; known are \"silver\""),
+        ("type = \"conductor\"\nmetal = \"gold\"\nf0 = 1", "a conductor needs one of"),
+        ("type = \"conductor\"\nf0 = 1\nalpha = 0", "gives an alpha below 1e-8"),
+        ("type = \"conductor\"\nf0 = 1\nmasking = \"smith\"", "\"masking\" cannot be \"smith\""),
+        (
+            "type = \"conductor\"\nf0 = 1\ndistribution = \"beckmann\"\ncompensation = \"turquin\"",
+            "\"compensation\" needs the distribution \"ggx\"",
+        ),
+        ("type = \"dielectric\"\nior = 0", "ior"),
+        ("type = \"phong\"\ndiffuse = 0.6\nglossy = 0.6", "reflects 1.2 of the light"),
+        ("type = \"eon\"\nroughness = 1.5", "roughness"),
+    ] {
+        let message = refused(text);
+        assert!(message.contains(says), "{text}: {message}");
     }
 }

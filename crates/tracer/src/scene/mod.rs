@@ -29,9 +29,13 @@ mod transform;
 
 pub use environment::{Environment, Sky, SkyMap};
 pub use error::SceneError;
+pub use gonio_kernel::energy::Compensation;
+pub use gonio_kernel::lobe::PhongNorm;
+pub use gonio_kernel::lobe::eon::Directional;
+pub use gonio_kernel::microfacet::Masking;
 
-/// Smallest microfacet width: below it, f32 cannot resolve the lobe, and a mirror is what is meant.
-pub(crate) const MIN_ALPHA: f32 = 1e-4;
+/// Smallest microfacet width: below it, a mirror is what is meant.
+pub(crate) const MIN_ALPHA: f32 = gonio_kernel::microfacet::ALPHA_MIN as f32;
 /// Largest radiance a material or the environment may have: the film's range ends a little above.
 pub(crate) const MAX_RADIANCE: f64 = 1e6;
 
@@ -193,15 +197,71 @@ pub enum Model {
         /// Reflectance at every angle, each channel in [0, 1].
         reflectance: Color,
     },
-    /// A rough metal (GGX microfacets).
+    /// A rough diffuse surface: energy-preserving Oren–Nayar.
+    Eon {
+        /// Albedo, each channel in [0, 1].
+        base_color: Color,
+        /// Roughness in [0, 1]; 0 is Lambert's law.
+        roughness: f32,
+        /// Whether the albedo that it conserves is exact or a fit.
+        directional: Directional,
+    },
+    /// The modified Phong model.
+    Phong {
+        /// k_d, each channel in [0, 1]; with `glossy` at most 1.
+        diffuse: Color,
+        /// k_s, each channel in [0, 1].
+        glossy: Rgb<f32>,
+        /// Exponent in [0, 1e7].
+        exponent: f32,
+        /// What the glossy part is multiplied by.
+        norm: PhongNorm,
+    },
+    /// A rough metal, or the reflecting part of a dielectric.
     Conductor {
         /// What one facet reflects.
         fresnel: FresnelSpec,
-        /// Width along the tangent, in [1e-4, 1].
-        alpha_x: f32,
-        /// Width along the bitangent, in [1e-4, 1].
-        alpha_y: f32,
+        /// How rough it is.
+        microfacets: MicrofacetSpec,
+        /// What becomes of light that meets more than one facet.
+        compensation: Compensation,
     },
+    /// A dielectric that reflects and refracts.
+    Dielectric {
+        /// Index of the inside, where the winding's back is, over that of the outside, in [0.01, 100].
+        ior: f32,
+        /// How rough it is; smooth without.
+        microfacets: Option<MicrofacetSpec>,
+    },
+}
+
+/// A distribution of microfacets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MicrofacetSpec {
+    /// Which distribution.
+    pub distribution: Distribution,
+    /// How masking and shadowing go together.
+    pub masking: Masking,
+    /// Width along the tangent, in [1e-8, 1].
+    pub alpha_x: f32,
+    /// Width along the bitangent, in [1e-8, 1].
+    pub alpha_y: f32,
+}
+
+impl MicrofacetSpec {
+    /// GGX with height-correlated masking.
+    pub const fn ggx(alpha_x: f32, alpha_y: f32) -> Self {
+        Self { distribution: Distribution::Ggx, masking: Masking::HeightCorrelated, alpha_x, alpha_y }
+    }
+}
+
+/// The distributions of microfacets a scene can name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Distribution {
+    /// Trowbridge–Reitz.
+    Ggx,
+    /// Gaussian slopes.
+    Beckmann,
 }
 
 /// Reflectance of a facet against angle.
@@ -218,6 +278,18 @@ pub enum FresnelSpec {
     Schlick {
         /// Reflectance at normal incidence, each channel in [0, 1].
         f0: Rgb<f32>,
+    },
+    /// Schlick's approximation with a dip at 82°.
+    F82 {
+        /// Reflectance at normal incidence, each channel in [0, 1].
+        f0: Rgb<f32>,
+        /// What is left of Schlick's value at 82°, each channel in [0, 1].
+        tint: Rgb<f32>,
+    },
+    /// The reflection of a dielectric.
+    Dielectric {
+        /// Index behind the surface over that before it, in [0.01, 100].
+        ior: f32,
     },
 }
 

@@ -11,12 +11,14 @@ use gonio_kernel::Rgb;
 
 use super::error::quoted;
 use super::textures::Textures;
-use super::{Color, FresnelSpec, LobeSpec, MIN_ALPHA, Material, Model, SceneError, paths};
+use super::{Color, Compensation, FresnelSpec, LobeSpec, Material, MicrofacetSpec, Model, SceneError, paths};
 
 mod clean;
 
 /// Exponent from which a ray-traced reflection (illum 3 and up) is a mirror: the largest that exporters write.
 const MIRROR_NS: f64 = 1000.0;
+/// A reflection narrower than this is a mirror, whatever the exponent was meant to say.
+const MIRROR_ALPHA: f32 = 1e-4;
 
 /// One MTL file.
 pub(super) struct Library {
@@ -178,15 +180,19 @@ fn reflection(
         (None, None) if pm.is_some() => 0.25, // roughness 0.5
         (None, None) => 1.0,                  // Ns = 0
     };
-    if alpha < f64::from(MIN_ALPHA) {
+    if alpha < f64::from(MIRROR_ALPHA) {
         return Model::Mirror { reflectance: Color::Constant(f0) };
     }
     let aniso = aniso.unwrap_or(0.0);
     let aspect = (1.0 - 0.9 * aniso.abs()).sqrt(); // Burley 2012, "Physically-Based Shading at Disney"
-    let clamp = |alpha: f64| (alpha as f32).clamp(MIN_ALPHA, 1.0);
+    let clamp = |alpha: f64| (alpha as f32).clamp(MIRROR_ALPHA, 1.0);
     let (long, short) = (clamp(alpha / aspect), clamp(alpha * aspect));
     let (alpha_x, alpha_y) = if aniso < 0.0 { (short, long) } else { (long, short) };
-    Model::Conductor { fresnel: FresnelSpec::Schlick { f0 }, alpha_x, alpha_y }
+    Model::Conductor {
+        fresnel: FresnelSpec::Schlick { f0 },
+        microfacets: MicrofacetSpec::ggx(alpha_x, alpha_y),
+        compensation: Compensation::None,
+    }
 }
 
 /// Splits `-s 2 2 2 -clamp on wood grain.png` into the options' names and the file's.

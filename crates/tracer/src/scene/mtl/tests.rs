@@ -29,7 +29,14 @@ fn diffuse(r: f32, g: f32, b: f32) -> LobeSpec {
 
 fn metal(f0: f32, alpha_x: f32, alpha_y: f32) -> LobeSpec {
     let fresnel = FresnelSpec::Schlick { f0: Rgb::splat(f0) };
-    LobeSpec { weight: 1.0, model: Model::Conductor { fresnel, alpha_x, alpha_y } }
+    LobeSpec {
+        weight: 1.0,
+        model: Model::Conductor {
+            fresnel,
+            microfacets: MicrofacetSpec::ggx(alpha_x, alpha_y),
+            compensation: Compensation::None,
+        },
+    }
 }
 
 fn mirror(reflectance: f32) -> LobeSpec {
