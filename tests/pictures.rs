@@ -5,6 +5,7 @@ use glam::{DAffine3, DVec3};
 use gonio_accel::Intersect;
 use gonio_kernel::Rgb;
 use gonio_tracer::image::Picture;
+use gonio_tracer::Techniques;
 use gonio_tracer::scene::{
     Color, Compensation, Environment, FresnelSpec, LobeSpec, MicrofacetSpec, Model, Scene, Sky, SkyMap,
 };

@@ -77,8 +77,8 @@ fn refusals_name_the_line_and_what_would_be_right() {
             "dir/brass.toml:1: give one of \"roughness\", \"alpha\", or \"alpha_x\" with \"alpha_y\"",
         ),
         (
-            "type = \"conductor\"\nf0 = 1\nalpha = 1e-5",
-            "dir/brass.toml:3: \"alpha\" gives an alpha below 0.0001: use type = \"mirror\"",
+            "type = \"conductor\"\nf0 = 1\nalpha = 1e-9",
+            "dir/brass.toml:3: \"alpha\" gives an alpha below 1e-8: use type = \"mirror\", or a dielectric without roughness",
         ),
         (
             "type = \"conductor\"\nf0 = 1\nalpha = 1.1",
@@ -91,7 +91,7 @@ fn refusals_name_the_line_and_what_would_be_right() {
         ("type = \"mix\"\nlobes = []", "dir/brass.toml:2: a mix has 1 to 4 lobes, not 0"),
         (
             "type = \"mix\"\nlobes = [\n{ type = \"mix\" }]",
-            "dir/brass.toml:3: type \"mix\" is not possible here; known are \"diffuse\", \"mirror\", \"conductor\", \"mix\"",
+            "dir/brass.toml:3: type \"mix\" is not possible here; known are \"diffuse\", \"eon\", \"mirror\", \"phong\", \"conductor\", \"dielectric\", \"mix\"",
         ),
         (
             "type = \"mix\"\nlobes = [\n{ type = \"mirror\",\n alpha = 1 }]",
