@@ -1,11 +1,12 @@
 """Scattering models side by side: Mitsuba 3's (llvm_ad_rgb) and Gonio's (eight lanes), in one thread on one core.
 
 The two take turns in rounds of some tens of milliseconds, because the speed of a machine drifts: the ratio of neighbours is
-the result, the absolute figures are not. Each works on 4096 pairs of directions, uniform over the hemisphere (over the sphere
+the result, the absolute figures are not. A turn is worth its median pass over the batch, which no other program interrupted. Each works on 4096 pairs of directions, uniform over the hemisphere (over the sphere
 for what a dielectric scatters), which it reads from and writes to arrays within the second-level cache.
 
 Mitsuba's time is that of the kernels alone, by Dr.Jit's own kernel history: tracing and launching are not in it. Its
-parameters are arrays (dr.make_opaque) as Gonio's are black boxes, so neither compiler folds them. Gonio's are the rows of
+parameters are arrays (dr.make_opaque) as Gonio's are black boxes, so neither compiler folds them. It computes in as many lanes as
+its LLVM back end finds: 16 where there is AVX-512. Gonio's are the rows of
 benches/serve.rs, in the process that `cargo bench --bench kernel -- --serve` starts.
 
 Mitsuba has no Schlick or F82 metal: those rows stand beside its exact one, as an artist's choice would. Gonio's masking is
@@ -19,6 +20,7 @@ import argparse
 import os
 import subprocess
 from pathlib import Path
+from statistics import median
 
 ROOT = Path(__file__).resolve().parent.parent
 BATCH = 4096
@@ -100,7 +102,7 @@ class Mitsuba:
             self.dr.eval(*((sample.wo, valid) if question == "sample" else (sample.wo, weight, sample.pdf)))
 
     def nanoseconds(self, model, question, passes):
-        """Per direction, over so many launches."""
+        """Per direction, in the median of so many launches."""
         dr = self.dr
         with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
             dr.kernel_history_clear()
@@ -108,7 +110,9 @@ class Mitsuba:
                 self.answer(model, question)
             dr.sync_thread()
             milliseconds = [kernel["execution_time"] for kernel in dr.kernel_history([dr.KernelType.JIT])]
-        return sum(milliseconds) * 1e6 / (passes * BATCH)
+        if len(milliseconds) != passes:
+            raise SystemExit(f"{model} {question}: {len(milliseconds)} kernels in {passes} launches")
+        return median(milliseconds) * 1e6 / BATCH
 
 
 class Gonio:

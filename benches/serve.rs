@@ -1,5 +1,5 @@
 //! Batches for a partner in another program, which `benches/bsdfs.py` is: one line `ROW PASSES` on stdin is one answer on
-//! stdout, the nanoseconds per direction of that many passes over the batch.
+//! stdout, the nanoseconds per direction of the median of that many passes over the batch.
 //!
 //! A batch is [`BATCH`](super::BATCH) directions in arrays, read and written in eights within the second-level cache. The
 //! parameters of the lobe are hidden from the optimiser once per pass, its kind is not: as in a kernel that a just-in-time
@@ -134,13 +134,18 @@ fn weight<L: Lobe<F32x8>>(batch: &Lanes, passes: usize, lobe: impl Fn() -> L) ->
     })
 }
 
-/// Nanoseconds per direction. What is written is read by somebody, as far as the optimiser knows.
+/// Nanoseconds per direction: the median pass, which no other program interrupted. What is written is read by somebody, as
+/// far as the optimiser knows.
 fn timed<T: Copy>(blank: T, passes: usize, pass: impl Fn(&mut [T])) -> f64 {
     let mut out = vec![blank; BATCH / F32x8::LANES];
-    let start = Instant::now();
-    for _ in 0..passes {
-        pass(&mut out);
-        black_box(&mut out);
-    }
-    start.elapsed().as_secs_f64() * 1e9 / (passes * BATCH) as f64
+    let mut seconds: Vec<f64> = (0..passes.max(1))
+        .map(|_| {
+            let start = Instant::now();
+            pass(&mut out);
+            black_box(&mut out);
+            start.elapsed().as_secs_f64()
+        })
+        .collect();
+    seconds.sort_by(f64::total_cmp);
+    seconds[seconds.len() / 2] * 1e9 / BATCH as f64
 }
