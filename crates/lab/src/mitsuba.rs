@@ -259,7 +259,8 @@ pub(crate) fn measure_fresnel(_run: &Run) -> Finding {
     // A reflectance is a quotient of sums of about ten f32 terms, each below 1: 16 roundings of half an eps, at most
     // amplified fourfold by the small eta² - k² - sin² of the conductors. And near the critical angle it is vertical.
     let mut finding = Finding::at_most(1.0, "max |kernel − Mitsuba| in units of 32 eps and one ulp of an input ≤");
-    let models: [(&str, fn(&[f64]) -> f64); 2] = [
+    type Reflectance = fn(&[f64]) -> f64;
+    let models: [(&str, Reflectance); 2] = [
         ("fresnel_conductor", |x| fresnel::conductor(x[0], x[1], x[2])),
         ("fresnel_dielectric", |x| fresnel::dielectric(x[0].abs(), if x[0] < 0.0 { x[1].recip() } else { x[1] })),
     ];
@@ -350,6 +351,19 @@ fn vector(x: &[f64]) -> Dir {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Effort, Options, Outcome, validate_kernel};
+
+    #[test]
+    fn every_model_agrees_and_every_planted_fault_does_not() {
+        let options = Options { only: Some("mitsuba".to_owned()), ..Options::new(Effort::Quick) };
+        let mut checks = 0;
+        validate_kernel(&options, &mut |check| {
+            println!("{} {}: {:.3}", check.instrument, check.subject, check.measured);
+            assert!(matches!(check.outcome, Outcome::Passed), "{}: {} {}", check.subject, check.measured, check.detail);
+            checks += 1;
+        });
+        assert_eq!(checks, MODELS.len() + 1 + 10);
+    }
 
     #[test]
     fn a_number_that_cannot_be_read_is_an_error_with_its_line() {
