@@ -3,10 +3,13 @@
 //! ```text
 //! cargo bench --bench kernel               criterion's rows, 4096 directions each, all within the second-level cache
 //! cargo bench --bench kernel -- --ratio    the claim of `Conductor`: eight lanes against one direction at a time
+//! cargo bench --bench kernel -- --serve    rows on demand, for a partner that takes turns: see `serve.rs`
 //! ```
 //!
 //! Both paths are called the way a caller meets them: through a function that is not inlined, on input that the optimiser
 //! cannot see through. Without that it would turn the scalar loop into a vector loop of its own, and compare lanes with lanes.
+
+mod serve;
 
 use criterion::{Criterion, Throughput};
 use gonio_kernel::fresnel::Fresnel;
@@ -29,6 +32,9 @@ const ROUNDS: usize = 15;
 fn main() -> ExitCode {
     if std::env::args().any(|argument| argument == "--ratio") {
         return ratio();
+    }
+    if std::env::args().any(|argument| argument == "--serve") {
+        return serve::serve();
     }
     let mut criterion = Criterion::default().configure_from_args();
     rows(&mut criterion);

@@ -5,11 +5,10 @@ use glam::{DAffine3, DVec3};
 use gonio_accel::Intersect;
 use gonio_kernel::Rgb;
 use gonio_tracer::image::Picture;
-use gonio_tracer::Techniques;
 use gonio_tracer::scene::{
     Color, Compensation, Environment, FresnelSpec, LobeSpec, MicrofacetSpec, Model, Scene, Sky, SkyMap,
 };
-use gonio_tracer::{Backend, Crop, Plan, RenderSettings, Rendering, World, render};
+use gonio_tracer::{Backend, Crop, Plan, RenderSettings, Rendering, Techniques, World, render};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 

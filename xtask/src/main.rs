@@ -24,6 +24,8 @@ cargo xtask embree               get what the feature `embree` needs, if the sys
 cargo xtask no-std               prove that the kernel needs no std, no allocator and cannot panic
 cargo xtask peers [--rounds N] [--spp N] [--python PATH]
                                  the Cornell box against Mitsuba 3, in turns; Python with mitsuba is `python3`
+cargo xtask bsdfs [--rounds N] [--only TEXT] [--python PATH]
+                                 the lobes against Mitsuba 3, in turns: eight lanes, in-cache batches
 cargo xtask ratio                how much faster eight lanes are than one direction at a time
 cargo xtask fuzz [--executions N] [--target NAME]
                                  N inputs for each parser, 1,000,000 unless told; what broke one stays in target/fuzz
@@ -41,7 +43,8 @@ fn main() -> ExitCode {
         ("validate", rest) => validate::run(rest),
         ("embree", []) => embree::run(),
         ("no-std", []) => no_std::run(),
-        ("peers", rest) => peers::run(rest),
+        ("peers", rest) => peers::pictures(rest),
+        ("bsdfs", rest) => peers::lobes(rest),
         ("ratio", []) => cargo::run(cargo::cargo().args(["bench", "--bench", "kernel", "--", "--ratio"])),
         ("fuzz", rest) => fuzz::run(rest),
         ("tables", rest) => tables::run(rest),

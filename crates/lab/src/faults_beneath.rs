@@ -2,16 +2,18 @@
 
 use crate::faults::planted;
 use crate::frames::{self, kernel};
-use crate::probe::Worth;
+use crate::mitsuba::{self, Model};
+use crate::probe::{Dir, Worth};
 use crate::run::Task;
 use crate::zoo::{LAMBERT, METAL, SCHLICK};
-use crate::{elementary, lanes, mitsuba, reference, totality, warps};
+use crate::{elementary, lanes, reference, totality, warps};
 use gonio_kernel::lobe::AnyLobe;
 use gonio_kernel::{F32x8, Frame, Real, Vec3};
 
 /// One task per fault and instrument.
 pub(crate) fn tasks() -> Vec<Task<'static>> {
     let mut tasks = Vec::from(misread());
+    tasks.extend(beside_mitsuba());
     tasks.extend(around());
     tasks.extend([
         planted("left-handed frame", "frames", |run| {
@@ -89,16 +91,10 @@ pub(crate) fn tasks() -> Vec<Task<'static>> {
 }
 
 /// Errors that a lobe would make in value and density alike: only a second opinion can tell.
-fn misread() -> [Task<'static>; 6] {
+fn misread() -> [Task<'static>; 4] {
     [
         planted("alpha_x and alpha_y swapped everywhere", "reference", |run| {
             reference::measure(&METAL, |s, p, wo, wi| reference::kernel(s, &swapped(p), wo, wi), run)
-        }),
-        planted("alpha_x and alpha_y swapped everywhere", "mitsuba", |run| {
-            mitsuba::measure(|p| (METAL.double)(&swapped(p)), run)
-        }),
-        planted("alpha taken for roughness", "mitsuba", |run| {
-            mitsuba::measure(|p| (METAL.double)(&[&[p[0] * p[0], p[1] * p[1]], &p[2..]].concat()), run)
         }),
         planted("1/π missing in value and density", "reference", |run| {
             reference::measure(
@@ -130,6 +126,53 @@ fn misread() -> [Task<'static>; 6] {
             )
         }),
     ]
+}
+
+/// The same errors beside another renderer's answers, in every model that can make them.
+fn beside_mitsuba() -> impl Iterator<Item = Task<'static>> {
+    let [diffuse, metal, rough_metal, glass, rough_glass, smooth] = &mitsuba::MODELS;
+    let faults: [(&str, &Model, mitsuba::Kernel); 10] = [
+        ("1/π missing in value and density", diffuse, |p, wo, wi| {
+            let mut numbers = (mitsuba::MODELS[0].kernel)(p, wo, wi);
+            numbers[..4].iter_mut().for_each(|x| *x *= std::f64::consts::PI);
+            numbers
+        }),
+        ("alpha_x and alpha_y swapped everywhere", metal, |p, wo, wi| (mitsuba::MODELS[1].kernel)(&swapped(p), wo, wi)),
+        ("alpha taken for roughness", metal, |p, wo, wi| {
+            (mitsuba::MODELS[1].kernel)(&[&[p[0] * p[0], p[1] * p[1]], &p[2..]].concat(), wo, wi)
+        }),
+        ("alpha taken for a standard deviation", rough_metal, |p, wo, wi| {
+            let root = std::f64::consts::SQRT_2;
+            (mitsuba::MODELS[2].kernel)(&[&[p[0] * root, p[1] * root], &p[2..]].concat(), wo, wi)
+        }),
+        ("GGX for Beckmann", rough_metal, mitsuba::MODELS[1].kernel),
+        ("index inverted where light is refracted", glass, |p, wo, wi| {
+            let through = wo.z * wi.z < 0.0;
+            (mitsuba::MODELS[3].kernel)(&[p[0], p[1], if through { p[2].recip() } else { p[2] }], wo, wi)
+        }),
+        ("radiance not compressed by refraction", glass, |p, wo, wi| {
+            uncompressed((mitsuba::MODELS[3].kernel)(p, wo, wi), p[2], wo, wi)
+        }),
+        ("radiance not compressed by refraction", rough_glass, |p, wo, wi| {
+            uncompressed((mitsuba::MODELS[4].kernel)(p, wo, wi), p[2], wo, wi)
+        }),
+        ("radiance not compressed by refraction", smooth, |p, wo, wi| {
+            uncompressed((mitsuba::MODELS[5].kernel)(p, wo, wi), p[0], wo, wi)
+        }),
+        ("index inverted", smooth, |p, wo, wi| (mitsuba::MODELS[5].kernel)(&[p[0].recip()], wo, wi)),
+    ];
+    faults.into_iter().map(|(name, model, kernel)| {
+        planted(&format!("{name} ({})", model.name), "mitsuba", move |run| mitsuba::measure(model, kernel, run))
+    })
+}
+
+/// Values as importance.
+fn uncompressed(mut numbers: [f64; 7], eta: f64, wo: Dir, wi: Dir) -> [f64; 7] {
+    if wo.z * wi.z < 0.0 {
+        let factor = if wo.z > 0.0 { eta * eta } else { (eta * eta).recip() };
+        numbers[..3].iter_mut().for_each(|f| *f *= factor);
+    }
+    numbers
 }
 
 fn swapped(p: &[f64]) -> Vec<f64> {

@@ -74,14 +74,16 @@ pub(crate) fn beckmann(p: &[f64], wo: Dir, wi: Dir) -> Worth {
     let cos_om = wo.x * m[0] + wo.y * m[1] + wo.z * m[2];
     let slopes = [m[0] / m[2] / p[0], m[1] / m[2] / p[1]];
     let d = (-slopes[0] * slopes[0] - slopes[1] * slopes[1]).exp() / (PI * p[0] * p[1] * m[2].powi(4));
-    let lambda = |w: Dir| {
-        let a = w.z / ((p[0] * w.x).powi(2) + (p[1] * w.y).powi(2)).sqrt();
-        if a.is_infinite() { 0.0 } else { 0.5 * ((-a * a).exp() / (a * PI.sqrt()) - statrs::function::erf::erfc(a)) }
-    };
-    let (lambda_o, lambda_i) = (lambda(wo), lambda(wi));
+    let (lambda_o, lambda_i) = (beckmann_lambda(p[0], p[1], wo), beckmann_lambda(p[0], p[1], wi));
     let schlick = |c: usize| p[2 + c] + (1.0 - p[2 + c]) * (1.0 - cos_om).powi(5);
     let f_cos = [0, 1, 2].map(|c| schlick(c) * d / (1.0 + lambda_o + lambda_i) / (4.0 * wo.z));
     Worth { f_cos, pdf: d / (1.0 + lambda_o) / (4.0 * wo.z) }
+}
+
+/// Λ of a Beckmann surface: Heitz 2014, equation 77.
+pub(crate) fn beckmann_lambda(alpha_x: f64, alpha_y: f64, w: Dir) -> f64 {
+    let a = w.z / ((alpha_x * w.x).powi(2) + (alpha_y * w.y).powi(2)).sqrt();
+    if a.is_infinite() { 0.0 } else { 0.5 * ((-a * a).exp() / (a * PI.sqrt()) - statrs::function::erf::erfc(a)) }
 }
 
 /// Schlick's Fresnel with separable masking.
@@ -266,12 +268,12 @@ fn ggx_lambda(alpha_x: f64, alpha_y: f64, w: Dir) -> f64 {
 }
 
 /// Smith's G₁.
-pub(crate) fn ggx_g1(alpha_x: f64, alpha_y: f64, w: Dir) -> f64 {
+fn ggx_g1(alpha_x: f64, alpha_y: f64, w: Dir) -> f64 {
     1.0 / (1.0 + ggx_lambda(alpha_x, alpha_y, w))
 }
 
 /// Height-correlated G₂.
-pub(crate) fn ggx_g2(alpha_x: f64, alpha_y: f64, wo: Dir, wi: Dir) -> f64 {
+fn ggx_g2(alpha_x: f64, alpha_y: f64, wo: Dir, wi: Dir) -> f64 {
     1.0 / (1.0 + ggx_lambda(alpha_x, alpha_y, wo) + ggx_lambda(alpha_x, alpha_y, wi))
 }
 

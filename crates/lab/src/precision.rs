@@ -40,19 +40,30 @@ pub(crate) fn measure(single: View, run: &Run) -> Finding {
 /// The largest change of each of the four numbers when one component of wo or wi, or one parameter (as in `nudged`), moves by
 /// one ulp of `f32`, either way.
 pub(crate) fn sensitivity<'a>(probe: &dyn Probe, nudged: &[Box<dyn Probe + 'a>], wo: Dir, wi: Dir) -> [f64; 4] {
-    let here = probe.eval(wo, wi).numbers();
-    let mut largest = [0.0_f64; 4];
-    let mut compare_with = |there: [f64; 4]| {
+    let moved = nudged.iter().map(|probe| probe.eval(wo, wi).numbers());
+    largest_change(|wo, wi| probe.eval(wo, wi).numbers(), moved, wo, wi)
+}
+
+/// The largest change of each number of `eval` when one component of wo or wi moves by one ulp of `f32`, either way, and of
+/// those in `others` from those here.
+pub(crate) fn largest_change<const N: usize>(
+    eval: impl Fn(Dir, Dir) -> [f64; N],
+    others: impl Iterator<Item = [f64; N]>,
+    wo: Dir,
+    wi: Dir,
+) -> [f64; N] {
+    let here = eval(wo, wi);
+    let mut largest = [0.0_f64; N];
+    let mut compare = |there: [f64; N]| {
         for (largest, (a, b)) in largest.iter_mut().zip(here.iter().zip(there)) {
             *largest = largest.max((a - b).abs());
         }
     };
-    nudged.iter().for_each(|probe| compare_with(probe.eval(wo, wi).numbers()));
-    let mut compare = |wo: Dir, wi: Dir| compare_with(probe.eval(wo, wi).numbers());
+    others.for_each(&mut compare);
     for axis in 0..3 {
         for up in [false, true] {
-            compare(moved(wo, axis, up), wi);
-            compare(wo, moved(wi, axis, up));
+            compare(eval(moved(wo, axis, up), wi));
+            compare(eval(wo, moved(wi, axis, up)));
         }
     }
     largest

@@ -119,7 +119,8 @@ fn widen<R: Scalar>(w: Vec3<R>) -> Dir {
 fn narrow<R: Scalar>(w: Dir) -> Vec3<R> {
     Vec3::new(R::lit(w.x), R::lit(w.y), R::lit(w.z))
 }
-fn worth<R: Scalar>(value: Value<R>) -> Worth {
+/// The same numbers in `f64`.
+pub(crate) fn worth<R: Scalar>(value: Value<R>) -> Worth {
     let Rgb { r, g, b } = value.f_cos;
     Worth { f_cos: [r.widen(), g.widen(), b.widen()], pdf: value.pdf.widen() }
 }

@@ -10,7 +10,7 @@ use crate::finding::{Finding, Run};
 use crate::random::seed_for;
 use crate::statistics::{FAMILY_SIGNIFICANCE, sidak};
 use crate::subject::{Subject, View};
-use crate::zoo::{METAL, rows, species};
+use crate::zoo::{rows, species};
 use crate::{
     chi2, consistency, discrete, elementary, frames, furnace, lanes, mitsuba, normalisation, precision, reciprocity,
 };
@@ -176,7 +176,9 @@ fn kernel_tasks() -> Vec<Task<'static>> {
     }
     tasks.push(Task::new("lanes", "mathematics, warps, frames, Fresnel", 0, lanes::measure_parts));
     tasks.push(Task::new("reference", "Fresnel, roughness, photometry", 0, reference::measure_conventions));
-    tasks.push(Task::new("mitsuba", "rough conductor", 0, |run| mitsuba::measure(METAL.double, run)));
+    for model in &mitsuba::MODELS {
+        tasks.push(Task::new("mitsuba", model.name, 0, |run| mitsuba::measure(model, model.kernel, run)));
+    }
     tasks.push(Task::new("mitsuba", "Fresnel", 0, mitsuba::measure_fresnel));
     tasks.push(Task::new("walk", "GGX", walk::TESTS, |run| walk::measure(walk::KERNEL, run)));
     tasks.push(Task::new("frames", "from normal and tangent", 0, |run| frames::measure(frames::kernel, run)));

@@ -97,7 +97,7 @@ impl<R: Real> Lobe<R> for Conductor<R> {
         Prepared([self.microfacets.smith_length(wo), self.microfacets.bound(wo), missing, R::ZERO])
     }
 
-    #[inline]
+    #[inline(always)]
     fn eval_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
         let Prepared([s_o, bound, missing_o, _]) = *prepared;
         let h = wo + wi;
