@@ -42,7 +42,7 @@ pub(crate) fn serve() -> ExitCode {
     let mut above = Lanes::new();
     let mut both_sides = Lanes::new();
     let below = F32x8::new([1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, -1.0]);
-    both_sides.wi.iter_mut().for_each(|wi| wi.z = wi.z * below);
+    both_sides.wi.iter_mut().for_each(|wi| wi.z *= below);
     for line in std::io::stdin().lock().lines() {
         let Ok(line) = line else { return ExitCode::FAILURE };
         let mut words = line.split_whitespace();
