@@ -128,7 +128,7 @@ fn albedo(species: &'static Species) -> Plot {
 }
 
 /// The mean weight of samples on a grid of 32² random numbers, as a luminance.
-fn mean_weight(probe: &SurfaceProbe<f64>, wo: Dir) -> f64 {
+pub(crate) fn mean_weight(probe: &dyn Probe, wo: Dir) -> f64 {
     const GRID: usize = 32;
     const GOLDEN: f64 = 0.618_033_988_749_894_9; // its multiples fill [0, 1) evenly
     let at = |i: usize| (i as f64 + 0.5) / GRID as f64;
