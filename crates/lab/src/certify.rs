@@ -47,18 +47,22 @@ impl Certificate {
     pub fn holds(&self) -> bool {
         !self.checks.iter().any(Check::failed)
     }
+
+    /// What the model claims of itself, in words.
+    pub fn claims(&self) -> String {
+        let reciprocal = if self.reciprocal { "reciprocal" } else { "not reciprocal, by design" };
+        match (self.conserving, self.excess) {
+            (true, 0.0) => format!("{reciprocal}; conserves energy"),
+            (true, excess) => format!("{reciprocal}; conserves energy within {excess:e}"),
+            (false, _) => format!("{reciprocal}; gains energy, by design"),
+        }
+    }
 }
 
 impl fmt::Display for Certificate {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         writeln!(out, "{}: {}", self.name, if self.holds() { "holds" } else { "FAILED" })?;
-        let reciprocal = if self.reciprocal { "reciprocal" } else { "not reciprocal, by design" };
-        let conserving = match (self.conserving, self.excess) {
-            (true, 0.0) => "conserves energy".to_owned(),
-            (true, excess) => format!("conserves energy within {excess:e}"),
-            (false, _) => "gains energy, by design".to_owned(),
-        };
-        writeln!(out, "claims: {reciprocal}; {conserving}\n")?;
+        writeln!(out, "claims: {}\n", self.claims())?;
         for check in &self.checks {
             let Check { instrument, subject, measured, meaning, limit, detail, .. } = check;
             let about = subject.strip_prefix(&self.name).unwrap_or(subject).trim_start();

@@ -76,12 +76,12 @@ pub(crate) fn of_probe(probe: &dyn Probe) -> FurnaceMap {
 }
 
 /// The first number of the surface that says how rough it is decides what the rows mean.
-fn roughness(surface: &Surface<f32>) -> Option<Rough> {
+pub(crate) fn roughness(surface: &Surface<f32>) -> Option<Rough> {
     anatomy::dials(surface).iter().find_map(|(dial, _)| dial.rough)
 }
 
 /// The surface without absorption, as rough as given.
-fn white(surface: &Surface<f32>, roughness: Option<f64>) -> Surface<f64> {
+pub(crate) fn white(surface: &Surface<f32>, roughness: Option<f64>) -> Surface<f64> {
     let varied = self::roughness(surface);
     anatomy::rebuilt(surface, |dial, x| match (dial.white, dial.rough) {
         (Some(white), _) => f64::from(white),
