@@ -1,17 +1,18 @@
 //! The range of each number of a surface over which its formulas can be trusted, found by trying.
 //!
 //! One number moves over its whole domain and far beyond while the others stay. At each value pairs of directions of every
-//! difficult kind go through the unguarded mixture: what comes back must be finite and not negative, and in `f32` as near
-//! to `f64` as the precision instrument demands. The safe range is the longest unbroken run of good values about the
-//! surface's own; it must cover the domain. Zero and what lies beyond the domain may fail: that is what the guard is for.
+//! difficult kind go through the unguarded mixture. What comes back must be finite and not negative: the safe range is the
+//! longest unbroken run of such values about the surface's own, and it must cover the domain. Zero and what lies beyond may
+//! fail: that is what the guard is for. In `f32` there is a second, narrower run: over it results are also as near to `f64` as
+//! the precision instrument demands. It must cover the domain too, but for widths below 10⁻⁴: there the rounding of directions
+//! is coarser than the lobe.
 
-use crate::anatomy::{self, Dial};
+use crate::anatomy::{self, Dial, Rough};
 use crate::directions::show;
-use crate::finding::Finding;
-use crate::finding::Run;
+use crate::finding::{Finding, Run};
 use crate::precision;
-use crate::probe::{Dir, Kind};
-use crate::subject::{Subject, View};
+use crate::probe::{Dir, Kind, Worth};
+use crate::subject::{NARROWEST, Subject, View};
 use crate::zoo::Parameter;
 use gonio_kernel::Surface;
 use serde::Serialize;
@@ -27,9 +28,11 @@ pub struct SafeRange {
     pub value: f64,
     /// Its domain.
     pub domain: [f64; 2],
-    /// The least and the largest value of the unbroken run of good ones.
-    pub safe: [f64; 2],
-    /// What went wrong just below, if anything was tried there.
+    /// The least and the largest value of the unbroken run of those that give finite, non-negative results; none if its own does not.
+    pub safe: Option<[f64; 2]>,
+    /// The same for results that are precise as well; none in `f64`, for lack of anything better to compare with.
+    pub precise: Option<[f64; 2]>,
+    /// What went wrong just below the narrower run, if anything was tried there.
     pub below: Option<String>,
     /// What went wrong just above.
     pub above: Option<String>,
@@ -61,64 +64,90 @@ fn values(range: &Parameter, own: f32) -> Vec<f32> {
     values
 }
 
+/// What went wrong at one value.
+#[derive(Default)]
+struct Wrong {
+    unsound: Option<String>,
+    imprecise: Option<String>,
+}
+
+/// Indices of the first and the last of the good ones about `start`.
+fn run_about(start: usize, count: usize, good: impl Fn(usize) -> bool) -> Option<(usize, usize)> {
+    let (mut lo, mut hi) = (start, start);
+    while lo > 0 && good(lo - 1) {
+        lo -= 1;
+    }
+    while hi + 1 < count && good(hi + 1) {
+        hi += 1;
+    }
+    good(start).then_some((lo, hi))
+}
+
 /// The safe range of number `index`, in `f32` or `f64`, and whether it covers the domain.
 pub(crate) fn measure(surface: &Surface<f32>, index: usize, single: bool, run: &Run) -> (Finding, SafeRange) {
     let (dial, own) = anatomy::dials(surface)[index];
-    let Dial { lobe, name, range, .. } = dial;
+    let Dial { lobe, name, range, rough, .. } = dial;
     let values = values(&range, own);
-    let verdicts: Vec<Option<String>> = values.iter().map(|&x| wrong_at(surface, index, x, single, run)).collect();
-    let good = |at: usize| verdicts[at].is_none();
-    // Around its own value; a surface that is not safe where it is has no safe range.
+    let wrongs: Vec<Wrong> = values.iter().map(|&x| wrong_at(surface, index, x, single, run)).collect();
     let start = values.iter().position(|&x| x == own).unwrap_or(0);
-    let (mut lo, mut hi) = (start, start);
-    while good(start) && lo > 0 && good(lo - 1) {
-        lo -= 1;
-    }
-    while good(start) && hi + 1 < values.len() && good(hi + 1) {
-        hi += 1;
-    }
-    let number = if lobe == 0 { name.to_owned() } else { format!("lobe {}: {name}", lobe + 1) };
-    let wide = |x: f32| f64::from(x);
-    let why = |at: Option<usize>| at.and_then(|at| verdicts[at].as_ref().map(|why| format!("{:e}: {why}", values[at])));
+    let is_precise = |at: usize| wrongs[at].unsound.is_none() && wrongs[at].imprecise.is_none();
+    let sound = run_about(start, values.len(), |at| wrongs[at].unsound.is_none());
+    let precise = run_about(start, values.len(), is_precise);
+    let ends = |run: Option<(usize, usize)>| run.map(|(lo, hi)| [lo, hi].map(|at| f64::from(values[at])));
+    let why = |at: usize| {
+        let wrong = wrongs.get(at)?;
+        Some(format!("{:e}: {}", values[at], wrong.unsound.as_ref().or(wrong.imprecise.as_ref())?))
+    };
+    let (first, last) = precise.unwrap_or((start + 1, start.wrapping_sub(1)));
     let found = SafeRange {
-        number,
+        number: if lobe == 0 { name.to_owned() } else { format!("lobe {}: {name}", lobe + 1) },
         precision: if single { "f32" } else { "f64" },
-        value: wide(own),
-        domain: [wide(range.lo), wide(range.hi)],
-        safe: if good(start) { [wide(values[lo]), wide(values[hi])] } else { [f64::MAX, -f64::MAX] },
-        below: why(if good(start) { lo.checked_sub(1) } else { Some(start) }),
-        above: why(if good(start) { (hi + 1 < values.len()).then_some(hi + 1) } else { Some(start) }),
+        value: f64::from(own),
+        domain: [f64::from(range.lo), f64::from(range.hi)],
+        safe: ends(sound),
+        precise: ends(precise).filter(|_| single),
+        below: first.checked_sub(1).and_then(why),
+        above: why(last.wrapping_add(1)),
         tried: values.len(),
     };
     let mut finding = Finding::at_most(0.0, "unsafe values of the number inside its domain ≤");
-    let inside = |x: f32| range.lo <= x && x <= range.hi;
-    let bad: Vec<usize> = (0..values.len()).filter(|&at| inside(values[at]) && !good(at)).collect();
-    finding.raise(bad.len() as f64, || why(bad.first().copied()).unwrap_or_default());
-    let [from, to] = found.safe;
-    finding.note(format!("safe over [{from:e}, {to:e}], domain [{:e}, {:e}]", range.lo, range.hi));
+    let has_shape = |x: f32| rough != Some(Rough::Width) || x >= NARROWEST;
+    let is_bad = |at: &usize| {
+        let x = values[*at];
+        let inside = range.lo <= x && x <= range.hi;
+        inside && (wrongs[*at].unsound.is_some() || (wrongs[*at].imprecise.is_some() && has_shape(x)))
+    };
+    let bad: Vec<usize> = (0..values.len()).filter(is_bad).collect();
+    finding.raise(bad.len() as f64, || bad.first().and_then(|&at| why(at)).unwrap_or_default());
+    finding.note(format!("{} values", values.len()));
     (finding, found)
 }
 
 /// What is wrong with the surface whose number `index` is x.
-fn wrong_at(surface: &Surface<f32>, index: usize, x: f32, single: bool, run: &Run) -> Option<String> {
+fn wrong_at(surface: &Surface<f32>, index: usize, x: f32, single: bool, run: &Run) -> Wrong {
     let moved: Surface<f32> = anatomy::with_number(surface, index, x);
     let subject = Subject::of_surface_at_any_width("", &moved);
-    let view = subject.views().find(|view| view.probe.single() == single)?;
+    let mut wrong = Wrong::default();
+    let Some(view) = subject.views().find(|view| view.probe.single() == single) else { return wrong };
     let mut random = run.random();
     for _ in 0..run.by_effort(150, 1_000, 10_000) {
         let Some((wo, wi)) = view.pair(&mut random) else { continue };
         let u = random.sampler_input(view.probe.single());
-        if let Some(wrong) = judge(view, wo, wi, u) {
-            return Some(wrong);
+        wrong.unsound = unsound(view, wo, wi, u);
+        if wrong.unsound.is_some() {
+            break;
+        }
+        if single && wrong.imprecise.is_none() {
+            wrong.imprecise = imprecise(view, wo, wi);
         }
     }
-    None
+    wrong
 }
 
-fn judge(view: View, wo: Dir, wi: Dir, u: [f64; 3]) -> Option<String> {
+fn unsound(view: View, wo: Dir, wi: Dir, u: [f64; 3]) -> Option<String> {
     let value = view.probe.eval(wo, wi);
     if !value.is_sound() {
-        return Some(format!("{:?} at wo {}, wi {}", value.numbers(), show(wo), show(wi)));
+        return Some(format!("{} at wo {}, wi {}", numbers(value), show(wo), show(wi)));
     }
     let draw = view.probe.sample(wo, u);
     let length2 = draw.wi.length2();
@@ -127,18 +156,20 @@ fn judge(view: View, wo: Dir, wi: Dir, u: [f64; 3]) -> Option<String> {
     }
     match draw.kind {
         Kind::Discrete(worth, _) if !worth.is_sound() => {
-            return Some(format!("a discrete event of {:?} at wo {}", worth.numbers(), show(wo)));
+            Some(format!("a discrete event of {} at wo {}", numbers(worth), show(wo)))
         }
-        _ => {}
+        _ => None,
     }
-    if view.probe.single() && !view.reference.single() {
-        let errors = precision::errors(view, wo, wi);
-        let worst = errors.into_iter().fold(0.0, f64::max);
-        if worst > precision::LIMIT || errors.iter().any(|e| e.is_nan()) {
-            let rough = value.numbers();
-            let exact = view.reference.eval(wo, wi).numbers();
-            return Some(format!("f32 gives {rough:?}, f64 {exact:?} at wo {}, wi {}", show(wo), show(wi)));
-        }
-    }
-    None
+}
+
+fn imprecise(view: View, wo: Dir, wi: Dir) -> Option<String> {
+    let fine = precision::errors(view, wo, wi).into_iter().all(|error| error <= precision::LIMIT);
+    let (rough, exact) = (view.probe.eval(wo, wi), view.reference.eval(wo, wi));
+    (!fine).then(|| format!("f32 gives {}, f64 {} at wo {}, wi {}", numbers(rough), numbers(exact), show(wo), show(wi)))
+}
+
+/// f_cos and pdf.
+fn numbers(worth: Worth) -> String {
+    let [r, g, b, pdf] = worth.numbers();
+    format!("f_cos ({r:.3e}, {g:.3e}, {b:.3e}), pdf {pdf:.3e}")
 }

@@ -45,19 +45,23 @@ pub(super) fn page(
 }
 
 fn ranges(page: &mut String, ranges: &[SafeRange]) {
-    *page += "<h2>Where each number is safe without a guard</h2>\n<p class=\"soft\">By a sweep of the domain and far beyond: finite, \
-              not negative, and in f32 as near to f64 as rounded inputs allow. Eight lanes give the bits of f32.</p>\n<table><thead><tr>\
-              <th>Number</th><th>Arithmetic</th><th>Safe</th><th>Domain</th><th>Here</th></tr></thead><tbody>\n";
+    *page += "<h2>Where each number is safe without a guard</h2>\n<p class=\"soft\">By a sweep of the domain and far beyond: finite and \
+              not negative; precise where f32 is as near to f64 as rounded inputs allow. Eight lanes give the bits of f32.</p>\n<table><thead><tr>\
+              <th>Number</th><th>Arithmetic</th><th>Safe</th><th>Precise too</th><th>Domain</th><th>Here</th></tr></thead><tbody>\n";
     for r in ranges {
         let why = |side: &str, why: &Option<String>| {
             why.as_ref()
                 .map_or_else(String::new, |why| format!("<div class=\"detail\">{side}, at {}</div>", escape(why)))
         };
-        let [lo, hi] = r.safe;
-        let safe = if lo > hi { "nowhere".to_owned() } else { format!("{lo:.3e} to {hi:.3e}") };
+        let ends = |range: Option<[f64; 2]>, without: &str| {
+            range.map_or_else(|| without.to_owned(), |[lo, hi]| format!("{lo:.1e} to {hi:.1e}"))
+        };
+        let safe = ends(r.safe, "nowhere");
+        let precise = ends(r.precise, if r.precision == "f32" { "nowhere" } else { "" });
         let _ = writeln!(
             page,
             "<tr><td>{}{}{}</td><td>{}</td><td class=\"number\" data-name=\"safe\">{safe}</td>\
+             <td class=\"number\" data-name=\"precise\">{precise}</td>\
              <td class=\"number\" data-name=\"domain\">{:.3e} to {:.3e}</td><td class=\"number\" data-name=\"here\">{:.3e}</td></tr>",
             escape(&r.number),
             why("below", &r.below),
