@@ -547,7 +547,13 @@ fn an_old_processor_gets_a_sentence_instead_of_an_illegal_instruction() {
 fn a_certificate_is_printed_written_and_drawn() {
     let folder = folder();
     let text = gonio(folder.path(), "certify metal.toml --quick --json c.json --report c.html").succeeds();
-    for words in ["metal: holds", "claims: reciprocal; conserves energy", "alpha_x", "white furnace", "not counted (not asked for)"] {
+    for words in [
+        "metal: holds",
+        "claims: reciprocal; conserves energy",
+        "alpha_x",
+        "white furnace",
+        "not counted (not asked for)",
+    ] {
         assert!(text.contains(words), "\"{words}\" is not in: {text}");
     }
     let json: Value = serde_json::from_str(&fs::read_to_string(folder.path().join("c.json")).unwrap()).unwrap();

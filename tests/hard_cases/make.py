@@ -279,6 +279,10 @@ def fresnel():
             c = unit(vec(wo))[2]
             e = mpf(eta)
             r = dielectric(e, c)
+            if cos is None and abs(eta - 1) < 1e-6:
+                case(file, f"glass of index {eta}: nothing or all at {wo}", origin, {"type": "dielectric", "ior": eta},
+                     {"finite": True}, "law only: one unit in the last place of the index moves F from 0 to 1", wo=wo)
+                continue
             case(file, f"glass of index {eta}: reflected share at {wo}", origin, {"type": "dielectric", "ior": eta},
                  {"reflectance": float(r), "absolute": 2e-6, "absolute_f64": 1e-9 if cos else 2e-6},
                  "Fresnel's equations (Born & Wolf 1.5), mpmath, 60 digits", wo=wo)

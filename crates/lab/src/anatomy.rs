@@ -4,6 +4,7 @@
 //! domain, and its white twin all are [`rebuilt`] from it: what the kernel would have made of those numbers.
 
 use crate::zoo::{ALPHA, ETA, EXPONENT, EXTINCTION, INDEX, Parameter, UNIT};
+use gonio_kernel::energy::Compensation;
 use gonio_kernel::fresnel::Fresnel;
 use gonio_kernel::lobe::{
     AnyLobe, Conductor, Dielectric, Eon, Lambert, Mirror, Phong, PhongNorm, RoughDielectric, eon,
@@ -145,7 +146,7 @@ fn lobe_of<S: Real>(lobe: &AnyLobe<f32>, numbers: &mut Numbers<S>) -> AnyLobe<S>
         }
         AnyLobe::Conductor(l) => {
             let (microfacets, fresnel) = (numbers.microfacets(&l.microfacets), numbers.fresnel(&l.fresnel));
-            Conductor::new(microfacets, fresnel).with_masking(l.masking).into()
+            Conductor::new(microfacets, fresnel).with_masking(l.masking).with_compensation(l.compensation).into()
         }
         AnyLobe::Dielectric(l) => Dielectric::new(numbers.plain("ior", INDEX, l.eta)).into(),
         AnyLobe::RoughDielectric(l) => {
@@ -182,7 +183,9 @@ pub(crate) fn transmits(lobe: &AnyLobe<f32>) -> bool {
 /// Whether the sampler maps the unit square to directions one to one.
 pub(crate) fn one_to_one(lobe: &AnyLobe<f32>) -> bool {
     match lobe {
-        AnyLobe::Lambert(_) | AnyLobe::Conductor(_) => true,
+        AnyLobe::Lambert(_) => true,
+        // Kulla and Conty's lobe has a sampler of its own.
+        AnyLobe::Conductor(l) => l.compensation != Compensation::KullaConty,
         AnyLobe::Phong(l) => l.diffuse.largest() == 0.0 || l.glossy.largest() == 0.0,
         _ => false,
     }
@@ -209,9 +212,12 @@ pub(crate) fn largest_weight(lobe: &AnyLobe<f32>) -> f64 {
             let part = |k: Rgb<f64>| if k.luminance() > 0.0 { k.largest() * sum / k.luminance() } else { 0.0 };
             part(d).max(part(s) * excess)
         }
-        // Compensated, a reflector may weigh more than 1, and how much is not promised.
-        lobe if gonio_kernel::Lobe::<f32>::properties(lobe).reciprocal => 1.0,
-        _ => f64::INFINITY,
+        AnyLobe::Conductor(l) => match l.compensation {
+            Compensation::None => 1.0,
+            Compensation::KullaConty => 4.0,
+            Compensation::Turquin => 3.3,
+        },
+        _ => 1.0,
     }
 }
 

@@ -216,6 +216,7 @@ const MISSING: [(&str, &str); 4] = [
 mod tests {
     use super::*;
     use crate::check::Effort;
+    use gonio_kernel::energy::Compensation;
     use gonio_kernel::fresnel::Fresnel;
     use gonio_kernel::lobe::{
         Conductor, Dielectric, Eon, Lambert, Phong, PhongNorm, RoughDielectric, eon::Directional,
@@ -239,6 +240,8 @@ mod tests {
             Surface::of(matte),
             Surface::of(Conductor::new(ggx, gold)),
             Surface::of(Conductor::new(beckmann, Fresnel::Schlick { f0 })),
+            Surface::of(Conductor::new(ggx, Fresnel::Schlick { f0 }).with_compensation(Compensation::Turquin)),
+            Surface::of(Conductor::new(ggx, Fresnel::Schlick { f0 }).with_compensation(Compensation::KullaConty)),
             Surface::of(Dielectric::new(1.5)),
             Surface::of(RoughDielectric::new(ggx, 1.5)),
             Surface::of(phong),

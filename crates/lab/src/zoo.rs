@@ -171,7 +171,7 @@ species!(
     kulla_conty,
     oracle::kulla_conty,
     [ALPHA, ALPHA, UNIT, UNIT, UNIT],
-    Nature { one_to_one: |_| false, weight: |_| 4.0, slack: compensated, ..Nature::REFLECTOR }
+    Nature { one_to_one: |_| false, weight: |_| 4.0, ..Nature::REFLECTOR }
 );
 species!(COAT, "dielectric-reflection", coat, oracle::coat, [ALPHA, ALPHA, INDEX]);
 species!(
@@ -236,10 +236,6 @@ fn separable<R: Real>(p: &[R]) -> AnyLobe<R> {
 fn kulla_conty<R: Real>(p: &[R]) -> AnyLobe<R> {
     let single = Conductor::new(ggx(p), Fresnel::Schlick { f0: rgb(&p[2..]) });
     single.with_compensation(Compensation::KullaConty).into()
-}
-/// How far a compensated albedo may exceed 1: by the error of E, or by that of an effective width.
-fn compensated(p: &[f32]) -> f64 {
-    if p[0] == p[1] { 1e-4 } else { 0.04 }
 }
 fn coat<R: Real>(p: &[R]) -> AnyLobe<R> {
     Conductor::new(ggx(p), Fresnel::Dielectric { eta: p[2] }).into()
