@@ -76,6 +76,7 @@ fn help_and_version_are_no_errors() {
         "render",
         "compare",
         "bsdf",
+        "certify",
         "bsdf eval",
         "bsdf sample",
         "bsdf albedo",
@@ -540,4 +541,30 @@ fn an_old_processor_gets_a_sentence_instead_of_an_illegal_instruction() {
     let err = String::from_utf8_lossy(&output.stderr);
     assert!(err.contains("needs a processor with AVX2") && err.contains("lacks AVX2 FMA"), "{err}");
     assert_eq!(output.status.code(), Some(1));
+}
+
+#[test]
+fn a_certificate_is_printed_written_and_drawn() {
+    let folder = folder();
+    let text = gonio(folder.path(), "certify metal.toml --quick --json c.json --report c.html").succeeds();
+    for words in [
+        "metal: holds",
+        "claims: reciprocal; conserves energy",
+        "alpha_x",
+        "white furnace",
+        "not counted (not asked for)",
+    ] {
+        assert!(text.contains(words), "\"{words}\" is not in: {text}");
+    }
+    let json: Value = serde_json::from_str(&fs::read_to_string(folder.path().join("c.json")).unwrap()).unwrap();
+    assert_eq!((&json["holds"], &json["reciprocal"]), (&Value::Bool(true), &Value::Bool(true)));
+    assert!(json["ranges"].as_array().unwrap().iter().all(|range| range["safe"].is_array()), "{json}");
+    let page = fs::read_to_string(folder.path().join("c.html")).unwrap();
+    assert!(page.contains("Certificate of metal") && page.contains("<svg") && !page.contains("<script"), "{page}");
+    let printed = gonio(folder.path(), "certify mirror.toml --quick --json -").succeeds();
+    assert!(serde_json::from_str::<Value>(&printed).is_ok_and(|json| json["holds"] == Value::Bool(true)), "{printed}");
+    // What is wrong with a file is said with its line; what is wrong with the command, with exit code 2.
+    fs::write(folder.path().join("bad.toml"), "type = \"conductor\"\nf0 = 2\n").unwrap();
+    gonio(folder.path(), "certify bad.toml").fails(1, "bad.toml:2");
+    gonio(folder.path(), "certify metal.toml --quick --full").fails(2, "--full");
 }

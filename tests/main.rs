@@ -5,6 +5,7 @@ mod behaviour; // Signals, full disks, folders that cannot be written to: the pr
 mod command_line; // What a user types: exit codes, error sentences, files.
 mod environment; // Environment maps: what they light, what is seen of them, and which files are refused.
 mod fuzz; // Whatever bytes a file holds, it loads soundly or is refused with a line that exists.
+mod hard_cases; // Inputs that broke other renderers, replayed in every arithmetic.
 mod instruments; // Each instrument passes the kernel and catches its planted faults.
 mod large; // Ten million triangles, in small: memory per triangle, progress, files that are only large.
 mod mitsuba; // The Cornell box and scenes under environment maps are the pictures that Mitsuba 3 makes.

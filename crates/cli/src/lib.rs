@@ -1,16 +1,17 @@
-//! The command line of Gonio: `gonio render`, `compare`, `bsdf`, `accel` and `validate`.
+//! The command line of Gonio: `gonio render`, `compare`, `bsdf`, `certify`, `accel` and `validate`.
 //!
 //! One file per subcommand, and no physics: scenes and pictures belong to `gonio-tracer`, scattering to `gonio-kernel`,
 //! its instruments to `gonio-lab`. What is here reads arguments, hands them on, and writes what comes back.
 //!
 //! Results go to files or standard output, everything else (warnings, progress, errors) to standard error. A file appears
-//! whole or not at all. Exit codes: 0 success; 1 an error; 2 wrong usage; 3 a check failed (validate, accel census); 75 a render
+//! whole or not at all. Exit codes: 0 success; 1 an error; 2 wrong usage; 3 a check failed (validate, certify, accel census); 75 a render
 //! was stopped and its picture is good; 130 a run was interrupted and quit at once.
 #![forbid(unsafe_code)]
 
 mod accel;
 mod bsdf;
 mod census;
+mod certify;
 mod compare;
 mod cpu;
 mod environment;
@@ -32,7 +33,7 @@ use std::ffi::OsString;
 use std::io;
 use std::process::ExitCode;
 
-const EXIT_CODES: &str = "Exit codes: 0 success; 1 an error; 2 wrong usage; 3 a check failed (validate, accel census); \
+const EXIT_CODES: &str = "Exit codes: 0 success; 1 an error; 2 wrong usage; 3 a check failed (validate, certify, accel census); \
                           75 a render was stopped early, its picture is written; 130 interrupted.";
 
 /// A reflectance kernel that can be trusted, and the eight-wide path tracer that proves it.
@@ -49,6 +50,7 @@ enum Command {
     Bsdf(bsdf::Args),
     Accel(accel::Args),
     Compare(compare::Args),
+    Certify(certify::Args),
     Validate(validate::Args),
     #[command(hide = true)]
     Tables(tables::Args),
@@ -61,6 +63,7 @@ impl Command {
             Self::Bsdf(args) => bsdf::run(args),
             Self::Accel(args) => accel::run(args),
             Self::Compare(args) => compare::run(args),
+            Self::Certify(args) => certify::run(args),
             Self::Validate(args) => validate::run(args),
             Self::Tables(args) => tables::run(args),
         }

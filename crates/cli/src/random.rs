@@ -29,6 +29,14 @@ pub(crate) fn fresh_seed() -> u64 {
     mix(now ^ u64::from(std::process::id())) >> 32
 }
 
+/// Reads a seed from the command line.
+pub(crate) fn seed(text: &str) -> Result<u64, String> {
+    if text == "random" {
+        return Ok(fresh_seed());
+    }
+    text.parse().map_err(|_| "a seed is a number from 0 to 2^64 - 1, or \"random\"".to_owned())
+}
+
 fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -7,15 +7,15 @@
 
 mod census;
 mod census_table;
-mod draw;
+pub(crate) mod draw;
 mod grade;
-mod html;
+pub(crate) mod html;
 mod report;
 mod scenes;
 mod table;
 
 use crate::output::{Target, write_text};
-use crate::random::fresh_seed;
+use crate::random::seed;
 use crate::usage::{Usage, spinner};
 use anyhow::{Context, Result};
 use gonio_lab::{Check, Effort, Options, Outcome, validate_kernel};
@@ -60,13 +60,6 @@ pub(crate) struct Args {
     /// Adds one check that fails: proves that a failure reaches the table, the report and the exit code
     #[arg(long, hide = true)]
     plant_failure: bool,
-}
-
-fn seed(text: &str) -> Result<u64, String> {
-    if text == "random" {
-        return Ok(fresh_seed());
-    }
-    text.parse().map_err(|_| "a seed is a number from 0 to 2^64 - 1, or \"random\"".to_owned())
 }
 
 /// Name of every instrument and what it proves.

@@ -51,7 +51,7 @@ pub mod warp;
 pub use closure::Closure;
 pub use frame::Frame;
 pub use lanes::{F32x8, Mask8, U32x8, each_lane};
-pub use lobe::{Event, Lobe, Sample, Value};
+pub use lobe::{Event, Lobe, Properties, Sample, Value};
 pub use real::{Mask, Precision, Real};
 pub use rgb::Rgb;
 pub use surface::{Alpha, Roughness, Surface};

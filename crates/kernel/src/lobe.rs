@@ -69,6 +69,23 @@ pub struct Sample<R: Real> {
 #[derive(Clone, Copy, Debug)]
 pub struct Prepared<R>(pub [R; 4]);
 
+/// Which laws of physics a model claims to obey. What it does not claim, it breaks on purpose: instruments measure that too,
+/// so a claim can be stale in either way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Properties {
+    /// Light takes the same way back, f(wo, wi) = f(wi, wo), through an interface up to η²; else it measurably does not.
+    pub reciprocal: bool,
+    /// No directional albedo exceeds 1 + `excess`; else one measurably exceeds 1 (at parameters as bright as the domain allows).
+    pub conserving: bool,
+    /// How far above 1 the albedo may lie by the model's own admission, as that of a fitted model does; 0 for most.
+    pub excess: f32,
+}
+
+impl Properties {
+    /// Reciprocal, and conserves energy exactly.
+    pub const LAWFUL: Self = Self { reciprocal: true, conserving: true, excess: 0.0 };
+}
+
 /// A scattering model with its parameters, in the local frame.
 ///
 /// Implement [`Lobe::eval`] and [`Lobe::sample`]; or, where something expensive depends on wo alone, [`Lobe::prepare`] with
@@ -120,6 +137,12 @@ pub trait Lobe<R: Real> {
     #[inline(always)]
     fn compression(&self, _wo: Vec3<R>) -> R {
         R::ONE
+    }
+
+    /// Which laws the model claims to obey at these parameters.
+    #[inline(always)]
+    fn properties(&self) -> Properties {
+        Properties::LAWFUL
     }
 }
 
@@ -217,6 +240,10 @@ macro_rules! any_lobe {
             #[inline(always)]
             fn compression(&self, wo: Vec3<R>) -> R {
                 match self {$( Self::$model(lobe) => lobe.compression(wo), )*}
+            }
+            #[inline(always)]
+            fn properties(&self) -> Properties {
+                match self {$( Self::$model(lobe) => Lobe::<R>::properties(lobe), )*}
             }
         }
 

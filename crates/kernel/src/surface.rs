@@ -2,7 +2,7 @@
 //!
 //! A surface is a list of at most [`MAX_LOBES`] lobes whose contributions add, each times its weight.
 
-use crate::lobe::{AnyLobe, Lobe};
+use crate::lobe::{AnyLobe, Lobe, Properties};
 use crate::real::Real;
 
 /// How many lobes a surface can hold. Base, coat, sheen and transmission are the most that a layered model needs at once.
@@ -73,6 +73,18 @@ impl<R: Real> Surface<R> {
         use crate::real::Mask;
         self.lobes()
             .fold(R::Mask::splat(true), |ok, l| ok & l.weight.ge(R::ZERO) & l.weight.le(R::ONE) & l.lobe.domain())
+    }
+
+    /// The laws that all lobes claim together; energy as long as the weights add up to 1 at most.
+    pub fn properties(&self) -> Properties {
+        self.lobes().fold(Properties::LAWFUL, |all, l| {
+            let one = l.lobe.properties();
+            Properties {
+                reciprocal: all.reciprocal && one.reciprocal,
+                conserving: all.conserving && one.conserving,
+                excess: all.excess.max(one.excess),
+            }
+        })
     }
 }
 

@@ -48,6 +48,10 @@ impl Finding {
         let (detail, note) = (String::new(), String::new());
         Self { meaning, limit, measured: 0.0, upwards: true, detail, note, not_run: None }
     }
+    /// A measurement that must reach `limit`, of something that is so by design; starts at 0 and keeps the largest.
+    pub(crate) fn at_least(limit: f64, meaning: &'static str) -> Self {
+        Self { upwards: false, ..Self::at_most(limit, meaning) }
+    }
     /// A p-value that must not fall below the level; starts at 1.
     pub(crate) fn p_value(level: f64) -> Self {
         Self { measured: 1.0, upwards: false, ..Self::at_most(level, "p ≥") }

@@ -10,6 +10,7 @@ use crate::probe::{Dir, Kind, Worth};
 use crate::random::Random;
 use crate::statistics::bennett_p;
 use crate::subject::{Prepared, View};
+use gonio_kernel::Properties;
 
 /// Agreement of quadrature and sampling.
 pub(crate) fn measure(view: View, run: &Run) -> Finding {
@@ -42,17 +43,25 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
 /// Quadrature against 1, and against the known albedo.
 pub(crate) fn measure_bound(view: View, run: &Run) -> Finding {
     let mut random = run.random();
-    let mut finding = Finding::at_most(
-        1.0,
-        "excess over 1 or error of a known albedo, in units of quadrature error, rounding and what the model admits ≤",
-    );
-    let mut largest = 0.0_f64;
+    let Properties { conserving, excess, .. } = view.claims.properties;
+    let mut finding = match conserving {
+        true => Finding::at_most(
+            1.0,
+            "excess over 1 or error of a known albedo, in units of quadrature error, rounding and what the model admits ≤",
+        ),
+        false => {
+            Finding::at_least(1.0, "gains energy by design: excess over 1 in units of quadrature error and rounding ≥")
+        }
+    };
+    let mut largest = (0.0_f64, "");
     for Prepared { name, wo, total, .. } in view.prepared() {
         let sampled = sample(view, *wo, 1000, &mut random);
-        let unit = total.error + rounding(view) + view.claims.slack;
+        let unit = total.error + rounding(view) + view.claims.slack + f64::from(excess);
         for c in 0..3 {
             let albedo = total.value[c] + sampled.discrete.iter().map(|d| d.1.f_cos[c]).sum::<f64>();
-            largest = largest.max(albedo);
+            if albedo > largest.0 {
+                largest = (albedo, name);
+            }
             finding.raise((albedo - 1.0) / unit, || format!("{name}, channel {c}: albedo {albedo}"));
             let Some(known) = view.claims.albedo else { continue };
             finding.raise((albedo - known[c]).abs() / unit, || {
@@ -67,7 +76,7 @@ pub(crate) fn measure_bound(view: View, run: &Run) -> Finding {
             }
         }
     }
-    finding.note(format!("largest albedo {largest:.9}"));
+    finding.note(format!("largest albedo {:.9} at {}", largest.0, largest.1));
     finding
 }
 

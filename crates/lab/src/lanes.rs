@@ -4,6 +4,7 @@
 //! Ordinary inputs, ordinary ones with one or two special numbers, and all special. The unguarded mixture is compared:
 //! behind the guard most extreme inputs would compare zero with zero.
 
+use crate::anatomy;
 use crate::finding::{Finding, Run};
 use crate::probe::{lane_event, lane_value};
 use crate::random::Random;
@@ -50,12 +51,7 @@ pub(crate) fn measure_mixture(first: &'static Species, second: &'static Species,
     let mut ordinary = |random: &mut Random| {
         let mut x: Vec<f32> = first.parameters.iter().chain(second.parameters).map(|p| parameter(p, random)).collect();
         x.extend([random.coarse() as f32, random.pick(&[0.0, 0.5, 1.0])]);
-        let wo = crate::directions::any_above(random);
-        let wi = crate::directions::partner(random, wo);
-        for w in [wo, wi] {
-            x.extend([w.x as f32, w.y as f32, w.z as f32]);
-        }
-        x.extend([(); 3].map(|()| random.coarse() as f32));
+        push_question(random, &mut x);
         x
     };
     compare(
@@ -67,29 +63,80 @@ pub(crate) fn measure_mixture(first: &'static Species, second: &'static Species,
             let surface = Surface::black()
                 .with(numbers[a + b], (first.lanes)(&numbers[..a]))
                 .with(numbers[a + b + 1], (second.lanes)(&numbers[a..a + b]));
-            let closure = Unguarded::new(&surface, pack3(x, at));
-            let value = closure.eval(pack3(x, at + 3));
-            let sample = closure.sample([pack(x, at + 6), pack(x, at + 7), pack(x, at + 8)]);
-            let event = closure.discrete(&sample.event);
-            for (l, out) in out.iter_mut().enumerate() {
-                push_value(lane_value(&value, l), out);
-                push_sample(lane(sample.wi, l), &lane_event(&sample.event, l), out);
-                push_value(lane_value(&event, l), out);
-            }
+            ask_lanes(&surface, x, at, out);
         },
         |x, out| {
             let surface = Surface::black()
                 .with(x[a + b], (first.single)(&x[..a]))
                 .with(x[a + b + 1], (second.single)(&x[a..a + b]));
-            let closure = Unguarded::new(&surface, vec3(x, at));
-            let sample = closure.sample([x[at + 6], x[at + 7], x[at + 8]]);
-            push_value(closure.eval(vec3(x, at + 3)), out);
-            push_sample(sample.wi, &sample.event, out);
-            push_value(closure.discrete(&sample.event), out);
+            ask(&surface, x, at, out);
         },
     )
 }
 
+/// One surface, each lane with its own or other numbers: of its domain, or special.
+pub(crate) fn measure_surface(surface: &Surface<f32>, run: &Run) -> Finding {
+    let dials = anatomy::dials(surface);
+    let count = dials.len();
+    let mut ordinary = |random: &mut Random| {
+        let moved = random.bits().is_multiple_of(2);
+        let number = |(dial, own): &(anatomy::Dial, f32), random: &mut Random| match moved {
+            true => parameter(&dial.range, random),
+            false => *own,
+        };
+        let mut x: Vec<f32> = dials.iter().map(|dial| number(dial, random)).collect();
+        push_question(random, &mut x);
+        x
+    };
+    let mut finding = compare(
+        run,
+        count + 9,
+        &mut ordinary,
+        |x, out| {
+            let mut at = 0..;
+            let lanes = anatomy::rebuilt(surface, |_, _| pack(x, at.next().unwrap_or_default()));
+            ask_lanes(&lanes, x, count, out);
+        },
+        |x, out| {
+            let mut at = 0..;
+            let single = anatomy::rebuilt(surface, |_, _| x[at.next().unwrap_or_default()]);
+            ask(&single, x, count, out);
+        },
+    );
+    finding.note("each lane with numbers of its own".to_owned());
+    finding
+}
+
+/// wo, wi and three numbers for a sampler.
+fn push_question(random: &mut Random, x: &mut Vec<f32>) {
+    let wo = crate::directions::any_above(random);
+    let wi = crate::directions::partner(random, wo);
+    for w in [wo, wi] {
+        x.extend([w.x as f32, w.y as f32, w.z as f32]);
+    }
+    x.extend([(); 3].map(|()| random.coarse() as f32));
+}
+
+/// Everything a surface answers in lanes to the questions that begin at number `at`.
+fn ask_lanes(surface: &Surface<F32x8>, x: &[Vec<f32>; 8], at: usize, out: &mut [Vec<f32>; 8]) {
+    let closure = Unguarded::new(surface, pack3(x, at));
+    let value = closure.eval(pack3(x, at + 3));
+    let sample = closure.sample([pack(x, at + 6), pack(x, at + 7), pack(x, at + 8)]);
+    let event = closure.discrete(&sample.event);
+    for (l, out) in out.iter_mut().enumerate() {
+        push_value(lane_value(&value, l), out);
+        push_sample(lane(sample.wi, l), &lane_event(&sample.event, l), out);
+        push_value(lane_value(&event, l), out);
+    }
+}
+/// The same by one scalar.
+fn ask(surface: &Surface<f32>, x: &[f32], at: usize, out: &mut Vec<f32>) {
+    let closure = Unguarded::new(surface, vec3(x, at));
+    let sample = closure.sample([x[at + 6], x[at + 7], x[at + 8]]);
+    push_value(closure.eval(vec3(x, at + 3)), out);
+    push_sample(sample.wi, &sample.event, out);
+    push_value(closure.discrete(&sample.event), out);
+}
 fn push_value(value: Value<f32>, out: &mut Vec<f32>) {
     out.extend([value.f_cos.r, value.f_cos.g, value.f_cos.b, value.pdf]);
 }

@@ -6,7 +6,8 @@
 //! - A `Subject` is a model with its probes (`f32`, and where they exist `f64` and eight lanes) and what is claimed of it.
 //! - An instrument measures a subject and returns a [`Check`]: a number, its limit, and what the two mean.
 //! - [`validate_kernel`] runs every instrument over the zoo, all lobes of the kernel at many parameters.
-//! - [`certify`] runs those that make sense for a model of your own and returns a [`Certificate`].
+//! - [`certify`] runs those that make sense for a model of your own and returns a [`Certificate`]; [`certify_surface`] does
+//!   it for a surface of the kernel's lobes, whose numbers it can also vary.
 //! - A planted fault is a model that is wrong on purpose. Every instrument must catch its faults, or the run fails.
 //!
 //! Statistical tests share one significance: with a correct kernel, a run fails by chance with probability 0.01 at most,
@@ -22,6 +23,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod anatomy;
 mod cells;
 mod certify;
 mod check;
@@ -47,15 +49,21 @@ mod random;
 mod reciprocity;
 mod reference;
 mod run;
+mod speed;
 mod statistics;
 mod subject;
+mod sweep;
 pub mod tables;
 mod totality;
 mod walk;
 mod warps;
 mod weight;
+mod white;
 mod zoo;
 
-pub use certify::{Certificate, certify};
+pub use certify::{Certificate, certify, certify_surface};
 pub use check::{Check, Effort, Outcome};
 pub use run::{Options, instruments, validate_kernel};
+pub use speed::{Call, Speed, exercise};
+pub use sweep::SafeRange;
+pub use white::FurnaceMap;

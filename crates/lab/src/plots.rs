@@ -4,20 +4,22 @@
 //! residual of reciprocity over both angles in units of rounding (is it noise, or structure?), and the residuals of the χ²
 //! test, over its cells and as a histogram beside the normal distribution (is it noise, or structure?).
 
+use crate::anatomy::Rough;
 use crate::chi2::observed_and_expected;
 use crate::finding::Run;
 use crate::probe::{Dir, Kind, Probe, SurfaceProbe};
 use crate::random::{direction, seed_for};
 use crate::run::Options;
 use crate::subject::Subject;
-use crate::zoo::{Species, Varied, species};
-use gonio_kernel::Rgb;
+use crate::white;
+use crate::zoo::{Row, Species, Varied, species};
+use gonio_kernel::{Rgb, Surface};
 
 /// A plot with its words.
 #[derive(Clone, Debug)]
 pub struct Plot {
     /// The lobe that it shows.
-    pub lobe: &'static str,
+    pub lobe: String,
     /// The instrument whose view it is.
     pub instrument: &'static str,
     /// What is drawn.
@@ -93,6 +95,20 @@ impl Axis {
     }
 }
 
+/// The same plots of one surface: its white twin's albedo, its own reciprocity and χ².
+pub fn of_surface(name: &str, surface: &Surface<f32>, options: &Options) -> Vec<Plot> {
+    let subject = Subject::of_surface(name, surface);
+    let mut plots = vec![white_albedo(name, surface)];
+    let Some(view) = subject.views().next() else { return plots };
+    if !subject.claims.discrete {
+        if !subject.claims.transmits {
+            plots.push(reciprocity_of(name, "", view.probe));
+        }
+        plots.extend(residuals_of(&subject, "", options));
+    }
+    plots
+}
+
 /// All plots; a second or two.
 pub fn plots(options: &Options) -> Vec<Plot> {
     let continuous = |s: &&Species| !s.nature.discrete;
@@ -104,9 +120,31 @@ pub fn plots(options: &Options) -> Vec<Plot> {
 
 const COSINE_OUT: Axis = Axis { name: "cosθ of wo", lo: 0.0, hi: 1.0, log: false };
 
+const COLUMNS: usize = 36;
+const ROWS: usize = 24;
+
+/// Over roughness and angle, or over the angle alone.
+fn white_albedo(name: &str, surface: &Surface<f32>) -> Plot {
+    let varied = white::roughness(surface).map(Rough::axis);
+    let (axis, lo, hi, log) = varied.unwrap_or(("nothing varied", 0.0, 1.0, false));
+    let y = Axis { name: axis, lo, hi, log };
+    let mut values = Vec::with_capacity(COLUMNS * ROWS);
+    for line in 0..ROWS {
+        let probe = SurfaceProbe::new(white::white(surface, varied.map(|_| y.at(line, ROWS))), None);
+        values.extend((0..COLUMNS).map(|column| mean_weight(&probe, direction(COSINE_OUT.at(column, COLUMNS), 0.7))));
+    }
+    Plot {
+        lobe: name.to_owned(),
+        instrument: "furnace",
+        title: "White furnace".to_owned(),
+        caption: format!(
+            "Luminance of the light that it returns from a white sky with every reflectance 1, over angle and {axis}."
+        ),
+        figure: Figure::Map(Map { x: COSINE_OUT, y, columns: COLUMNS, values, colours: Colours::Linear(0.0, 1.0) }),
+    }
+}
+
 fn albedo(species: &'static Species) -> Plot {
-    const COLUMNS: usize = 36;
-    const ROWS: usize = 24;
     let Varied { name, range: (lo, hi), log, .. } = species.nature.varied;
     let y = Axis { name, lo, hi, log };
     let mut values = Vec::with_capacity(COLUMNS * ROWS);
@@ -116,7 +154,7 @@ fn albedo(species: &'static Species) -> Plot {
     }
     let parts = if species.has_width() { "; what is missing at large widths is light that scatters twice" } else { "" };
     Plot {
-        lobe: species.name,
+        lobe: species.name.to_owned(),
         instrument: "furnace",
         title: "Directional albedo".to_owned(),
         caption: format!(
@@ -128,7 +166,7 @@ fn albedo(species: &'static Species) -> Plot {
 }
 
 /// The mean weight of samples on a grid of 32² random numbers, as a luminance.
-fn mean_weight(probe: &SurfaceProbe<f64>, wo: Dir) -> f64 {
+pub(crate) fn mean_weight(probe: &dyn Probe, wo: Dir) -> f64 {
     const GRID: usize = 32;
     const GOLDEN: f64 = 0.618_033_988_749_894_9; // its multiples fill [0, 1) evenly
     let at = |i: usize| (i as f64 + 0.5) / GRID as f64;
@@ -146,11 +184,15 @@ fn mean_weight(probe: &SurfaceProbe<f64>, wo: Dir) -> f64 {
 }
 
 fn reciprocity(species: &'static Species) -> Plot {
-    const N: usize = 36;
-    const AZIMUTHS: usize = 16;
     let Varied { name, single, .. } = species.nature.varied;
     let probe = SurfaceProbe::new(species.specimen(single).single(), None);
-    let eps = f64::from(f32::EPSILON);
+    reciprocity_of(species.name, &format!(", {name} = {single}"), &probe)
+}
+
+fn reciprocity_of(lobe: &str, what: &str, probe: &dyn Probe) -> Plot {
+    const N: usize = 36;
+    const AZIMUTHS: usize = 16;
+    let eps = probe.epsilon();
     let residual = |o: usize, i: usize| {
         let differences = (0..AZIMUTHS).map(|k| {
             let wo = probe.snap(direction(COSINE_OUT.at(o, N), 0.7));
@@ -163,11 +205,11 @@ fn reciprocity(species: &'static Species) -> Plot {
         differences.fold(0.0, f64::max)
     };
     Plot {
-        lobe: species.name,
+        lobe: lobe.to_owned(),
         instrument: "reciprocity",
-        title: "Reciprocity, f32".to_owned(),
+        title: format!("Reciprocity, {}", if probe.single() { "f32" } else { "f64" }),
         caption: format!(
-            "Largest |f(wo,wi) − f(wi,wo)| over f in units of f32's epsilon, over {AZIMUTHS} azimuths, {name} = {single}. The limit is 16."
+            "Largest |f(wo,wi) − f(wi,wo)| over f in units of epsilon, over {AZIMUTHS} azimuths{what}. The limit is 16."
         ),
         figure: Figure::Map(Map {
             x: COSINE_OUT,
@@ -181,13 +223,17 @@ fn reciprocity(species: &'static Species) -> Plot {
 
 /// The residuals (observed − expected)/√expected of the second view's cells: over the cells, and how often they occur.
 fn residuals(species: &'static Species, options: &Options) -> [Plot; 2] {
+    let Varied { name, single, .. } = species.nature.varied;
+    let row = Row { name: species.name.to_owned(), ..species.specimen(single) };
+    residuals_of(&Subject::of_row(&row), &format!(", {name} = {single}"), options)
+}
+
+fn residuals_of(subject: &Subject, what: &str, options: &Options) -> [Plot; 2] {
     const SAMPLES: u64 = 500_000;
     const BINS: usize = 17;
-    let Varied { name, single, .. } = species.nature.varied;
-    let subject = Subject::of_row(&species.specimen(single));
-    let view = subject.views().next().expect("a row of the zoo has a form in f32");
+    let view = subject.views().next().expect("a subject has a form");
     let at = view.prepared().nth(1).expect("there are four views");
-    let seed = seed_for(options.seed, &format!("plot {}", species.name));
+    let seed = seed_for(options.seed, &format!("plot {}", subject.name));
     let run = Run { effort: options.effort, seed, level: 0.0 };
     let cells = observed_and_expected(view, at, SAMPLES, &mut run.random());
     // A cell that expects next to nothing, below the horizon, has no residual worth a colour.
@@ -204,11 +250,10 @@ fn residuals(species: &'static Species, options: &Options) -> [Plot; 2] {
     }
     let normal = |z: f64| (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt();
     let expected = (0..BINS).map(|i| finite.len() as f64 * step * normal(x.at(i, BINS))).collect();
-    let what = format!(", {name} = {single}");
     let words = format!("{}, {SAMPLES} samples{what}", at.name);
     [
         Plot {
-            lobe: species.name,
+            lobe: subject.name.clone(),
             instrument: "chi2",
             title: "χ² by cell".to_owned(),
             caption: format!("{words}. Cells of about equal probability; noise without structure is right."),
@@ -221,7 +266,7 @@ fn residuals(species: &'static Species, options: &Options) -> [Plot; 2] {
             }),
         },
         Plot {
-            lobe: species.name,
+            lobe: subject.name.clone(),
             instrument: "chi2",
             title: "χ² residuals".to_owned(),
             caption: format!("{words}. Bars: cells; line: the normal distribution that they should have."),

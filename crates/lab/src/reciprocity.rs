@@ -6,6 +6,8 @@
 //! (fused on one side), of the product with cos_i, and the division by it here: at most 4 roundings of half an eps on
 //! either side and as many again for each lobe of a mixture, so 16 eps bounds it with room. Of a stranger's lobe no such
 //! thing is known: it gets 8 times the change that moving one input by one unit in the last place makes, or 8 eps.
+//!
+//! A model that says it is not reciprocal must be caught being so, beyond that limit: else its claim is stale.
 
 use crate::directions::show;
 use crate::finding::{Finding, Run};
@@ -16,7 +18,10 @@ use crate::subject::View;
 pub(crate) fn measure(view: View, run: &Run) -> Finding {
     let mut random = run.random();
     let eps = view.probe.epsilon();
-    let mut finding = Finding::at_most(1.0, "max |f(wo,wi) − f(wi,wo)| in units of its rounding limit ≤");
+    let mut finding = match view.claims.properties.reciprocal {
+        true => Finding::at_most(1.0, "max |f(wo,wi) − f(wi,wo)| in units of its rounding limit ≤"),
+        false => Finding::at_least(1.0, "not reciprocal by design: max |f(wo,wi) − f(wi,wo)| in rounding limits ≥"),
+    };
     let mut residual = 0.0_f64;
     for _ in 0..run.by_effort(5_000, 50_000, 1_000_000) {
         let Some((wo, wi)) = view.pair(&mut random) else { continue };

@@ -1,18 +1,23 @@
 //! `Subject`: a model with its probes, with what is claimed of it, and with its integrals at the four views.
 
+use crate::anatomy;
 use crate::cells::Cells;
 use crate::directions::{VIEWS, any_above, partner};
 use crate::probe::{Dir, Kind, LobeProbe, Probe, SurfaceProbe, demote, promote};
 use crate::quadrature::Integral;
 use crate::random::{Random, direction, seed_for};
 use crate::zoo::Row;
-use gonio_kernel::Lobe;
-use gonio_kernel::Vec3;
+use gonio_kernel::{Lobe, Properties, Rgb, Surface, Vec3};
 use std::sync::OnceLock;
 
+/// Narrower than the lattice of f32 directions a lobe has no shape there.
+pub(crate) const NARROWEST: f32 = 1e-4;
+
 /// What is claimed of a model, beyond the laws that hold for all.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Claims {
+    /// Which laws it says it obeys: those that it says it breaks are measured to be broken.
+    pub(crate) properties: Properties,
     /// The directional albedo, where it is known exactly.
     pub(crate) albedo: Option<[f64; 3]>,
     /// A single continuous lobe whose sampler maps the unit square to directions one to one: then pdf · |∂ω/∂u| = 1.
@@ -25,12 +30,28 @@ pub(crate) struct Claims {
     pub(crate) discrete: bool,
     /// Scatters to the other side, and from there.
     pub(crate) transmits: bool,
-    /// How far the albedo may lie above 1, or from its known value, by the model's own admission.
+    /// How far the albedo may lie from its known value.
     pub(crate) slack: f64,
     /// No lobe has a positive weight: nothing is ever sampled.
     pub(crate) empty: bool,
     /// The least width of a lobe, if it is narrow.
     pub(crate) width: Option<f64>,
+}
+
+impl Claims {
+    /// Nothing but the laws.
+    pub(crate) const LAWFUL: Self = Self {
+        properties: Properties::LAWFUL,
+        albedo: None,
+        one_to_one: false,
+        symmetric: false,
+        one_event: false,
+        discrete: false,
+        transmits: false,
+        slack: 0.0,
+        empty: false,
+        width: None,
+    };
 }
 
 /// A model, measurable.
@@ -75,6 +96,7 @@ impl<'a> Subject<'a> {
     /// A row of the zoo.
     pub(crate) fn of_row(row: &Row) -> Self {
         let claims = Claims {
+            properties: row.single().properties(),
             albedo: row.albedo,
             one_to_one: row.only().is_some_and(|(species, p)| (species.nature.one_to_one)(p)),
             symmetric: row.lobes.iter().all(|(_, species, _)| species.nature.symmetric),
@@ -88,8 +110,7 @@ impl<'a> Subject<'a> {
         let probe = |row: &Row| SurfaceProbe::new(row.double(), None).with_weight_bounds(row.weight_bounds());
         Self {
             name: row.name.clone(),
-            // Narrower than the lattice of f32 directions a lobe has no shape there.
-            single: (row.least_width() >= 1e-4).then(|| -> Box<dyn Probe> {
+            single: (row.least_width() >= NARROWEST).then(|| -> Box<dyn Probe> {
                 Box::new(SurfaceProbe::new(row.single(), Some(row.lanes())).with_weight_bounds(row.weight_bounds()))
             }),
             double: Some(Box::new(probe(row))),
@@ -101,7 +122,58 @@ impl<'a> Subject<'a> {
 
     /// A user's lobe in `f32`.
     pub(crate) fn of_lobe<L: Lobe<f32> + Sync>(name: &str, lobe: &'a L) -> Self {
-        Self::of_probe(name, LobeProbe::<f32, L>::new(lobe), Claims::default())
+        let claims = Claims { properties: lobe.properties(), ..Claims::LAWFUL };
+        Self::of_probe(name, LobeProbe::<f32, L>::new(lobe), claims)
+    }
+
+    /// A surface of the kernel's lobes, in every arithmetic in which it has a shape.
+    pub(crate) fn of_surface(name: &str, surface: &Surface<f32>) -> Self {
+        let subject = Self::of_surface_at_any_width(name, surface);
+        let narrow = anatomy::least_width(surface) < NARROWEST;
+        if narrow { Self { single: None, ..subject } } else { subject }
+    }
+
+    /// The same, also in `f32` where that has no shape: finite and sound it must be nevertheless.
+    pub(crate) fn of_surface_at_any_width(name: &str, surface: &Surface<f32>) -> Self {
+        let lobes: Vec<_> = surface.lobes().map(|l| (f64::from(l.weight), &l.lobe)).collect();
+        let only = match lobes[..] {
+            [(1.0, lobe)] => Some(lobe),
+            _ => None,
+        };
+        let albedo = lobes.iter().try_fold([0.0; 3], |sum, (weight, lobe)| {
+            let Rgb { r, g, b } = anatomy::known_albedo(lobe)?.map(f64::from);
+            Some([sum[0] + weight * r, sum[1] + weight * g, sum[2] + weight * b])
+        });
+        let transmits = lobes.iter().any(|(_, lobe)| anatomy::transmits(lobe));
+        let discrete = lobes.iter().all(|(_, lobe)| anatomy::is_discrete(lobe));
+        let width = anatomy::least_width(surface);
+        let properties = surface.properties();
+        let claims = Claims {
+            properties,
+            albedo,
+            one_to_one: only.is_some_and(anatomy::one_to_one),
+            symmetric: !transmits && properties.reciprocal,
+            one_event: only.is_some() && discrete && !transmits,
+            discrete,
+            transmits,
+            slack: 0.0,
+            empty: lobes.iter().all(|(weight, _)| *weight == 0.0),
+            width: Some(f64::from(width)),
+        };
+        let bounds: Vec<f64> = lobes.iter().map(|(_, lobe)| anatomy::largest_weight(lobe)).collect();
+        let double = |surface: Surface<f64>| -> Box<dyn Probe> {
+            Box::new(SurfaceProbe::new(surface, None).with_weight_bounds(bounds.clone()))
+        };
+        Self {
+            name: name.to_owned(),
+            single: Some(Box::new(
+                SurfaceProbe::new(*surface, Some(anatomy::converted(surface))).with_weight_bounds(bounds.clone()),
+            )),
+            double: Some(double(anatomy::converted(surface))),
+            nudged: anatomy::nudged(surface).into_iter().map(double).collect(),
+            claims,
+            prepared: Default::default(),
+        }
     }
 
     /// The subject in each precision that it has.

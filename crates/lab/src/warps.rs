@@ -22,7 +22,7 @@ pub(crate) struct WarpProbe {
 /// The warps of directions.
 pub(crate) fn subjects() -> [Subject<'static>; 4] {
     let subject = |name, sample, pdf, single| {
-        let claims = Claims { one_to_one: true, ..Claims::default() };
+        let claims = Claims { one_to_one: true, ..Claims::LAWFUL };
         Subject::of_probe(name, WarpProbe { sample, pdf, single }, claims)
     };
     [

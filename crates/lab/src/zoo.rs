@@ -24,12 +24,18 @@ pub(crate) struct Parameter {
     pub(crate) log_from: Option<f32>,
 }
 
-const UNIT: Parameter = Parameter { lo: 0.0, hi: 1.0, log_from: None };
-const ALPHA: Parameter = Parameter { lo: 1e-8, hi: 1.0, log_from: Some(1e-8) };
-const EXPONENT: Parameter = Parameter { lo: 0.0, hi: 1e7, log_from: Some(1e-2) };
-const ETA: Parameter = Parameter { lo: 1e-4, hi: 100.0, log_from: Some(1e-4) };
-const EXTINCTION: Parameter = Parameter { lo: 0.0, hi: 100.0, log_from: Some(1e-4) };
-const INDEX: Parameter = Parameter { lo: 0.01, hi: 100.0, log_from: Some(0.01) };
+/// Reflectances, weights, roughness.
+pub(crate) const UNIT: Parameter = Parameter { lo: 0.0, hi: 1.0, log_from: None };
+/// Widths of microfacets.
+pub(crate) const ALPHA: Parameter = Parameter { lo: 1e-8, hi: 1.0, log_from: Some(1e-8) };
+/// Phong's exponent.
+pub(crate) const EXPONENT: Parameter = Parameter { lo: 0.0, hi: 1e7, log_from: Some(1e-2) };
+/// The real part of a conductor's index.
+pub(crate) const ETA: Parameter = Parameter { lo: 1e-4, hi: 100.0, log_from: Some(1e-4) };
+/// Its imaginary part.
+pub(crate) const EXTINCTION: Parameter = Parameter { lo: 0.0, hi: 100.0, log_from: Some(1e-4) };
+/// A relative index of refraction.
+pub(crate) const INDEX: Parameter = Parameter { lo: 0.01, hi: 100.0, log_from: Some(0.01) };
 
 /// What is claimed of a lobe at all its parameters, beyond the laws that hold for all.
 #[derive(Clone, Copy, Debug)]
@@ -153,14 +159,7 @@ species!(MIRROR, "mirror", mirror, oracle::discrete, [UNIT, UNIT, UNIT], Nature:
 // are unit to half an ulp of f32.
 const EON: Nature = Nature { one_to_one: |_| false, weight: |_| eon::LARGEST_WEIGHT, slack: |_| 1e-7, ..Nature::MATTE };
 species!(EON_EXACT, "eon-exact", eon_exact, oracle::eon_exact, [UNIT, UNIT, UNIT, UNIT], EON);
-species!(
-    EON_FITTED,
-    "eon-fitted",
-    eon_fitted,
-    oracle::eon_fitted,
-    [UNIT, UNIT, UNIT, UNIT],
-    Nature { slack: |_| 2e-3, ..EON } // the fit bounds energy no better
-);
+species!(EON_FITTED, "eon-fitted", eon_fitted, oracle::eon_fitted, [UNIT, UNIT, UNIT, UNIT], EON);
 species!(METAL, "conductor", metal, oracle::metal, [ALPHA, ALPHA, ETA, ETA, ETA, EXTINCTION, EXTINCTION, EXTINCTION]);
 species!(SCHLICK, "conductor-schlick", schlick, oracle::schlick, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
 species!(F82, "conductor-f82", f82, oracle::f82, [ALPHA, ALPHA, UNIT, UNIT, UNIT, UNIT, UNIT, UNIT]);
@@ -172,7 +171,7 @@ species!(
     kulla_conty,
     oracle::kulla_conty,
     [ALPHA, ALPHA, UNIT, UNIT, UNIT],
-    Nature { one_to_one: |_| false, weight: |_| 4.0, slack: compensated, ..Nature::REFLECTOR }
+    Nature { one_to_one: |_| false, weight: |_| 4.0, ..Nature::REFLECTOR }
 );
 species!(COAT, "dielectric-reflection", coat, oracle::coat, [ALPHA, ALPHA, INDEX]);
 species!(
@@ -237,10 +236,6 @@ fn separable<R: Real>(p: &[R]) -> AnyLobe<R> {
 fn kulla_conty<R: Real>(p: &[R]) -> AnyLobe<R> {
     let single = Conductor::new(ggx(p), Fresnel::Schlick { f0: rgb(&p[2..]) });
     single.with_compensation(Compensation::KullaConty).into()
-}
-/// How far a compensated albedo may exceed 1: by the error of E, or by that of an effective width.
-fn compensated(p: &[f32]) -> f64 {
-    if p[0] == p[1] { 1e-4 } else { 0.04 }
 }
 fn coat<R: Real>(p: &[R]) -> AnyLobe<R> {
     Conductor::new(ggx(p), Fresnel::Dielectric { eta: p[2] }).into()

@@ -19,7 +19,7 @@ const ACROSS: f64 = WIDTH - LEFT - RIGHT;
 const UP: f64 = HEIGHT - TOP - BOTTOM;
 
 /// A plot with its words.
-pub(super) fn figure(plot: &Plot) -> String {
+pub(crate) fn figure(plot: &Plot) -> String {
     let inner = match &plot.figure {
         Figure::Map(map) => map_marks(map),
         Figure::Histogram(histogram) => histogram_marks(histogram),

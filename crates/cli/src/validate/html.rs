@@ -5,6 +5,7 @@ use super::draw::figure;
 use super::grade::{groups, severity, short, verdict, worst};
 use super::report::Report;
 use super::scenes::{Exhibit, MAGNIFIED};
+use crate::environment::Environment;
 use gonio_lab::plots::Plot;
 use gonio_lab::{Check, Outcome};
 use std::collections::BTreeSet;
@@ -13,14 +14,13 @@ use std::fmt::Write;
 /// The whole page.
 pub(super) fn page(report: &Report, exhibits: &[Exhibit], plots: &[Plot]) -> String {
     let (class, word) = if report.failed > 0 { ("bad", "Failed") } else { ("good", "Passed") };
-    let mut page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>Gonio validation: {word}</title>\n\
-         <style>\n{}</style>\n</head>\n<body>\n<h1>Gonio validation</h1>\n\
+    let mut page = head(&format!("Gonio validation: {word}"));
+    let _ = writeln!(
+        page,
+        "<h1>Gonio validation</h1>\n\
          <p class=\"verdict {class}\">{word}: {}</p>\n<p class=\"soft\">gonio {}, {} effort, seed {}, {:.1} s{}. Statistical tests \
          of a run fail by chance with probability 0.01 at most, all together: half of that belongs to the rendered scenes, \
-         half to the kernel.</p>\n",
-        include_str!("report.css"),
+         half to the kernel.</p>",
         escape(&report.summary()),
         report.version,
         report.effort_name(),
@@ -38,8 +38,19 @@ pub(super) fn page(report: &Report, exhibits: &[Exhibit], plots: &[Plot]) -> Str
     for (name, group) in groups(&report.checks) {
         instrument(&mut page, report, name, &group);
     }
-    environment(&mut page, report);
+    environment(&mut page, &report.environment);
     page + "</body>\n</html>\n"
+}
+
+/// The beginning of a page, up to its body.
+pub(crate) fn head(title: &str) -> String {
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n\
+         <style>\n{}</style>\n</head>\n<body>\n",
+        escape(title),
+        include_str!("report.css"),
+    )
 }
 
 fn failures(page: &mut String, report: &Report) {
@@ -137,8 +148,8 @@ fn speeds(page: &mut String, exhibits: &[Exhibit]) {
 fn lobes(page: &mut String, plots: &[Plot]) {
     let mut names: Vec<&str> = Vec::new();
     for plot in plots {
-        if !names.contains(&plot.lobe) {
-            names.push(plot.lobe);
+        if !names.contains(&&*plot.lobe) {
+            names.push(&plot.lobe);
         }
     }
     for name in names {
@@ -163,7 +174,8 @@ fn instrument(page: &mut String, report: &Report, name: &str, group: &[&Check]) 
     *page += "</details>\n";
 }
 
-fn rows(page: &mut String, checks: &[&Check]) {
+/// A table of checks.
+pub(crate) fn rows(page: &mut String, checks: &[&Check]) {
     *page += "<table><thead><tr><th>Subject</th><th>Against its limit</th><th>Measured</th><th>Meaning and limit</th><th></th></tr></thead><tbody>\n";
     for check in checks {
         let (measures, result) = match &check.outcome {
@@ -194,11 +206,11 @@ fn rows(page: &mut String, checks: &[&Check]) {
     *page += "</tbody></table>\n";
 }
 
-fn environment(page: &mut String, report: &Report) {
-    let e = &report.environment;
+/// How the program was built, and where it ran.
+pub(crate) fn environment(page: &mut String, e: &Environment) {
     let assertions = if e.debug_assertions { "on" } else { "off" };
     let rows = [
-        ("Version", report.version.to_owned()),
+        ("Version", env!("CARGO_PKG_VERSION").to_owned()),
         ("Compiler", e.rustc.unwrap_or("not known").to_owned()),
         ("Target", format!("{} with {}", e.target, e.target_features.join(", "))),
         ("Debug assertions", assertions.to_owned()),
@@ -236,7 +248,8 @@ fn bar(check: &Check) -> String {
     )
 }
 
-pub(super) fn escape(text: &str) -> String {
+/// Text that cannot become markup.
+pub(crate) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 

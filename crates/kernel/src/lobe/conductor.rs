@@ -16,7 +16,7 @@
 //! one division. Kulla & Conty's lobe: about six divisions and 200 multiplications. What depends on wo alone (s(wo), the
 //! bound, 1 − E(wo)) is prepared once per closure.
 
-use super::{Event, Lobe, Prepared, Sample, Value};
+use super::{Event, Lobe, Prepared, Properties, Sample, Value};
 use crate::energy::{
     Compensation, Missing, effective_alpha, kulla_conty, missing_avg, multiple_fresnel, pdf_multiple, sample_multiple,
     scattered_again, turquin,
@@ -141,6 +141,19 @@ impl<R: Real> Lobe<R> for Conductor<R> {
         let fits = matches!(self.microfacets, Microfacets::Ggx(_)) && self.masking == Masking::HeightCorrelated;
         let fits = R::Mask::splat(fits || self.compensation == Compensation::None);
         self.microfacets.domain() & self.fresnel.domain() & fits
+    }
+
+    /// What is compensated exceeds all light by 1e-4 at most if isotropic, else by 4 %.
+    #[inline(always)]
+    fn properties(&self) -> Properties {
+        let [alpha_x, alpha_y] = self.microfacets.widths();
+        let isotropic = alpha_x.same(alpha_y).all();
+        let excess = match self.compensation {
+            Compensation::None => 0.0,
+            _ if isotropic => 1e-4,
+            _ => 0.04,
+        };
+        Properties { reciprocal: self.compensation != Compensation::Turquin, excess, ..Properties::LAWFUL }
     }
 }
 

@@ -25,7 +25,7 @@
 //!
 //! Cost of `eval`: 8 divisions and 6 square roots fitted, 12 and 6 exact.
 
-use super::{Event, Lobe, Sample, Value};
+use super::{Event, Lobe, Properties, Sample, Value};
 use crate::frame::both_above;
 use crate::math::{atan2_turns, sin_cos_turns};
 use crate::real::Real;
@@ -232,6 +232,13 @@ impl<R: Real> Lobe<R> for Eon<R> {
     #[inline(always)]
     fn domain(&self) -> R::Mask {
         self.albedo.within(0.0, 1.0) & self.roughness.ge(R::ZERO) & self.roughness.le(R::ONE)
+    }
+
+    /// The fit bounds energy to 2e-3 only.
+    #[inline(always)]
+    fn properties(&self) -> Properties {
+        let excess = if self.directional == Directional::Fitted { 2e-3 } else { 0.0 };
+        Properties { excess, ..Properties::LAWFUL }
     }
 }
 

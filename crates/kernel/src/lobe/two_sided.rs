@@ -2,7 +2,7 @@
 //!
 //! Seen from below, wo and wi are mirrored in the surface, and so is what is sampled. Reciprocity and energy are the lobe's.
 
-use super::{Event, Lobe, Prepared, Sample, Value};
+use super::{Event, Lobe, Prepared, Properties, Sample, Value};
 use crate::real::Real;
 use crate::rgb::Rgb;
 use crate::vec3::Vec3;
@@ -52,6 +52,11 @@ impl<R: Real, L: Lobe<R>> Lobe<R> for TwoSided<L> {
     #[inline(always)]
     fn compression(&self, wo: Vec3<R>) -> R {
         self.0.compression(turned(wo, wo))
+    }
+
+    #[inline(always)]
+    fn properties(&self) -> Properties {
+        Lobe::<R>::properties(&self.0)
     }
 }
 
