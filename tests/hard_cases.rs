@@ -294,7 +294,7 @@ impl<'a, R: Arithmetic> Replay<'a, R> {
             }
             "weight_at_most" => {
                 let bound = number(wanted) * 1.000_02;
-                let heavy = self.draws().find(|d| !d.failed && !(d.worth[3] > 0.0 && d.weight() <= bound));
+                let heavy = self.draws().find(|d| !(d.failed || (d.worth[3] > 0.0 && d.weight() <= bound)));
                 heavy.map(|d| format!("a sample towards {:?} weighs {} ({:?})", d.wi, d.weight(), d.worth))
             }
             "equals_mirror" => {

@@ -18,8 +18,11 @@ pub struct Interface<R> {
 /// Cosine of the refracted direction by Snell's law, eta = η_t/η_i > 0 seen from wo's side; 0 in total reflection.
 #[inline(always)]
 pub fn refracted_cosine<R: Real>(cos_o: R, eta: R) -> R {
+    // η² − sin²θ. Near η = 1 that cancels for grazing cosines, where (η − 1)(η + 1) + cos²θ does not.
     let sin2_o = (R::ONE - cos_o) * (R::ONE + cos_o);
-    (R::ONE - sin2_o / (eta * eta)).max(R::ZERO).sqrt()
+    let near = eta.gt(R::lit(0.5)) & eta.lt(R::lit(2.0));
+    let excess = R::select(near, (eta - R::ONE).mul_add(eta + R::ONE, cos_o * cos_o), eta.mul_add(eta, -sin2_o));
+    (excess / (eta * eta)).max(R::ZERO).sqrt()
 }
 
 /// An interface between two dielectrics met under the angles of these cosines, in [0, 1], which obey Snell's law for

@@ -139,7 +139,7 @@ pub fn certify<L: Lobe<f32> + Sync>(name: &str, lobe: &L, options: &Options) -> 
     }
     let checks = run(tasks, options);
     let probe = subject.views().next().map(|view| white::of_probe(view.probe));
-    let furnace = probe.unwrap_or_else(|| FurnaceMap::empty());
+    let furnace = probe.unwrap_or_else(FurnaceMap::empty);
     certificate(name, lobe.properties(), checks, Vec::new(), furnace, speed::of_lobe(lobe))
 }
 
@@ -184,7 +184,7 @@ fn certificate(
     furnace: FurnaceMap,
     speeds: Vec<Speed>,
 ) -> Certificate {
-    let Properties { reciprocal, conserving, excess } = properties;
+    let Properties { reciprocal, conserving, excess, .. } = properties;
     Certificate { name: name.to_owned(), reciprocal, conserving, excess, checks, ranges, furnace, speeds }
 }
 

@@ -72,8 +72,7 @@ pub(crate) fn beckmann(p: &[f64], wo: Dir, wi: Dir) -> Worth {
     let length = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();
     let m = sum.map(|x| x / length);
     let cos_om = wo.x * m[0] + wo.y * m[1] + wo.z * m[2];
-    let slopes = [m[0] / m[2] / p[0], m[1] / m[2] / p[1]];
-    let d = (-slopes[0] * slopes[0] - slopes[1] * slopes[1]).exp() / (PI * p[0] * p[1] * m[2].powi(4));
+    let d = beckmann_d(p[0], p[1], m);
     let (lambda_o, lambda_i) = (beckmann_lambda(p[0], p[1], wo), beckmann_lambda(p[0], p[1], wi));
     let schlick = |c: usize| p[2 + c] + (1.0 - p[2 + c]) * (1.0 - cos_om).powi(5);
     let f_cos = [0, 1, 2].map(|c| schlick(c) * d / (1.0 + lambda_o + lambda_i) / (4.0 * wo.z));
@@ -84,6 +83,19 @@ pub(crate) fn beckmann(p: &[f64], wo: Dir, wi: Dir) -> Worth {
 pub(crate) fn beckmann_lambda(alpha_x: f64, alpha_y: f64, w: Dir) -> f64 {
     let a = w.z / ((alpha_x * w.x).powi(2) + (alpha_y * w.y).powi(2)).sqrt();
     if a.is_infinite() { 0.0 } else { 0.5 * ((-a * a).exp() / (a * PI.sqrt()) - statrs::function::erf::erfc(a)) }
+}
+
+fn beckmann_d(alpha_x: f64, alpha_y: f64, m: [f64; 3]) -> f64 {
+    let slopes = [m[0] / m[2] / alpha_x, m[1] / m[2] / alpha_y];
+    (-slopes[0] * slopes[0] - slopes[1] * slopes[1]).exp() / (PI * alpha_x * alpha_y * m[2].powi(4))
+}
+
+/// Schlick's Fresnel with Turquin's factor: alpha_x, alpha_y, three f0.
+pub(crate) fn turquin(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    let single = schlick(p, wo, wi);
+    let lost = energy::Missing::of((p[0] * p[1]).sqrt()).at(wo.z);
+    let factor = |c: usize| 1.0 + p[2 + c] * (1.0 / (1.0 - lost) - 1.0);
+    Worth { f_cos: [0, 1, 2].map(|c| single.f_cos[c] * factor(c)), ..single }
 }
 
 /// Schlick's Fresnel with separable masking.
@@ -118,8 +130,19 @@ pub(crate) fn coat(p: &[f64], wo: Dir, wi: Dir) -> Worth {
 /// A rough interface: alpha_x, alpha_y, index; as importance. Walter et al. 2007, equations 16, 20 and 21, read with i for
 /// wo and o for wi, and all visible normals as density.
 pub(crate) fn ground(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    let (d, lambda) = (|m| ggx_d(p[0], p[1], m), |w| ggx_lambda(p[0], p[1], w));
+    ground_of(p[2], &d, &lambda, wo, wi)
+}
+
+/// The same with Beckmann's distribution.
+pub(crate) fn ground_beckmann(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    let (d, lambda) = (|m| beckmann_d(p[0], p[1], m), |w| beckmann_lambda(p[0], p[1], w));
+    ground_of(p[2], &d, &lambda, wo, wi)
+}
+
+fn ground_of(eta: f64, distribution: &dyn Fn([f64; 3]) -> f64, lambda: &dyn Fn(Dir) -> f64, wo: Dir, wi: Dir) -> Worth {
     let black = Worth { f_cos: [0.0; 3], pdf: 0.0 };
-    let (mut wo, mut wi, mut eta) = (wo, wi, p[2]);
+    let (mut wo, mut wi, mut eta) = (wo, wi, eta);
     if (eta - 1.0).abs() < 1e-3 {
         return black; // a discrete event
     }
@@ -127,12 +150,14 @@ pub(crate) fn ground(p: &[f64], wo: Dir, wi: Dir) -> Worth {
         (wo.z, wi.z, eta) = (-wo.z, -wi.z, 1.0 / eta);
     }
     let dot = |a: Dir, m: [f64; 3]| a.x * m[0] + a.y * m[1] + a.z * m[2];
-    let g1_o = ggx_g1(p[0], p[1], wo);
+    let (lambda_o, lambda_i) = (lambda(wo), lambda(Dir::new(wi.x, wi.y, wi.z.abs())));
+    let g1_o = 1.0 / (1.0 + lambda_o);
     if wi.z > 0.0 {
-        let all = microfacet_visible(p[0], p[1], wo, wi, |cos| [dielectric(cos, eta); 3], |_| 1.0);
-        let reflected = all.f_cos[0];
-        let mirror = microfacet_visible(p[0], p[1], wo, wi, |_| [1.0; 3], |cos| dielectric(cos, eta));
-        return Worth { f_cos: [reflected; 3], pdf: mirror.pdf };
+        let h = [wo.x + wi.x, wo.y + wi.y, wo.z + wi.z];
+        let length = (h[0] * h[0] + h[1] * h[1] + h[2] * h[2]).sqrt();
+        let m = h.map(|x| x / length);
+        let reflected = dielectric(dot(wo, m), eta) * distribution(m) / (4.0 * wo.z);
+        return Worth { f_cos: [reflected / (1.0 + lambda_o + lambda_i); 3], pdf: reflected * g1_o };
     }
     // The normal of refraction, on wo's side.
     let h = [wo.x + eta * wi.x, wo.y + eta * wi.y, wo.z + eta * wi.z];
@@ -148,8 +173,8 @@ pub(crate) fn ground(p: &[f64], wo: Dir, wi: Dir) -> Worth {
     let across = 2.0 * cos_om / (cos_om + eta * cos_t);
     let along = 2.0 * cos_om / (eta * cos_om + cos_t);
     let transmitted = eta * cos_t / cos_om * 0.5 * (across * across + along * along);
-    let d = ggx_d(p[0], p[1], m);
-    let g = g1_o * ggx_g1(p[0], p[1], wi);
+    let d = distribution(m);
+    let g = g1_o / (1.0 + lambda_i);
     let jacobian = eta * eta * cos_im.abs() / (cos_om + eta * cos_im).powi(2);
     let f = transmitted * d * g * cos_om * jacobian / (wo.z * wi.z.abs());
     let pdf = transmitted * g1_o * d * cos_om / wo.z * jacobian;

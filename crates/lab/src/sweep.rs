@@ -163,7 +163,8 @@ fn unsound(view: View, wo: Dir, wi: Dir, u: [f64; 3]) -> Option<String> {
 }
 
 fn imprecise(view: View, wo: Dir, wi: Dir) -> Option<String> {
-    let fine = precision::errors(view, wo, wi).into_iter().all(|error| error <= precision::LIMIT);
+    let limit = f64::from(view.claims.properties.units);
+    let fine = precision::errors(view, wo, wi).into_iter().all(|error| error <= limit);
     let (rough, exact) = (view.probe.eval(wo, wi), view.reference.eval(wo, wi));
     (!fine).then(|| format!("f32 gives {}, f64 {} at wo {}, wi {}", numbers(rough), numbers(exact), show(wo), show(wi)))
 }

@@ -123,10 +123,10 @@ fn integral(probe: &SurfaceProbe<f64>, wo: Dir, run: &Run) -> (f64, f64) {
     let mut random = run.random();
     let mut discrete: Vec<((u32, bool), f64)> = Vec::new();
     for _ in 0..1000 {
-        if let Kind::Discrete(worth, label) = probe.sample(wo, random.sampler_input(false)).kind {
-            if discrete.iter().all(|(seen, _)| *seen != label) {
-                discrete.push((label, worth.f_cos[1]));
-            }
+        if let Kind::Discrete(worth, label) = probe.sample(wo, random.sampler_input(false)).kind
+            && discrete.iter().all(|(seen, _)| *seen != label)
+        {
+            discrete.push((label, worth.f_cos[1]));
         }
     }
     (total.value[1] + discrete.iter().map(|d| d.1).sum::<f64>(), total.error)

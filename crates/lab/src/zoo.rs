@@ -173,6 +173,14 @@ species!(
     [ALPHA, ALPHA, UNIT, UNIT, UNIT],
     Nature { one_to_one: |_| false, weight: |_| 4.0, ..Nature::REFLECTOR }
 );
+species!(
+    TURQUIN,
+    "conductor-turquin",
+    turquin,
+    oracle::turquin,
+    [ALPHA, ALPHA, UNIT, UNIT, UNIT],
+    Nature { weight: |_| 3.3, symmetric: false, ..Nature::REFLECTOR }
+);
 species!(COAT, "dielectric-reflection", coat, oracle::coat, [ALPHA, ALPHA, INDEX]);
 species!(
     GLASS,
@@ -181,6 +189,14 @@ species!(
     oracle::discrete,
     [INDEX],
     Nature { transmits: true, index: Some(0), varied: Varied::INDEX, ..Nature::DISCRETE }
+);
+species!(
+    GROUND_BECKMANN,
+    "rough-dielectric-beckmann",
+    ground_beckmann,
+    oracle::ground_beckmann,
+    [ALPHA, ALPHA, INDEX],
+    Nature { transmits: true, one_to_one: |_| false, symmetric: false, index: Some(2), ..Nature::REFLECTOR }
 );
 species!(
     GROUND,
@@ -233,6 +249,10 @@ fn f82<R: Real>(p: &[R]) -> AnyLobe<R> {
 fn separable<R: Real>(p: &[R]) -> AnyLobe<R> {
     Conductor::new(ggx(p), Fresnel::Schlick { f0: rgb(&p[2..]) }).with_masking(Masking::Separable).into()
 }
+fn turquin<R: Real>(p: &[R]) -> AnyLobe<R> {
+    let single = Conductor::new(ggx(p), Fresnel::Schlick { f0: rgb(&p[2..]) });
+    single.with_compensation(Compensation::Turquin).into()
+}
 fn kulla_conty<R: Real>(p: &[R]) -> AnyLobe<R> {
     let single = Conductor::new(ggx(p), Fresnel::Schlick { f0: rgb(&p[2..]) });
     single.with_compensation(Compensation::KullaConty).into()
@@ -245,6 +265,9 @@ fn glass<R: Real>(p: &[R]) -> AnyLobe<R> {
 }
 fn beckmann<R: Real>(p: &[R]) -> AnyLobe<R> {
     Conductor::new(Beckmann { alpha_x: p[0], alpha_y: p[1] }, Fresnel::Schlick { f0: rgb(&p[2..]) }).into()
+}
+fn ground_beckmann<R: Real>(p: &[R]) -> AnyLobe<R> {
+    RoughDielectric::new(Beckmann { alpha_x: p[0], alpha_y: p[1] }, p[2]).into()
 }
 fn ground<R: Real>(p: &[R]) -> AnyLobe<R> {
     RoughDielectric::new(ggx(p), p[2]).into()
@@ -292,13 +315,14 @@ impl InZoo for Eon<f32> {
     const SPECIES: &'static [&'static Species] = &[&EON_EXACT, &EON_FITTED];
 }
 impl InZoo for Conductor<f32> {
-    const SPECIES: &'static [&'static Species] = &[&METAL, &SCHLICK, &F82, &SEPARABLE, &BECKMANN, &KULLA_CONTY, &COAT];
+    const SPECIES: &'static [&'static Species] =
+        &[&METAL, &SCHLICK, &F82, &SEPARABLE, &BECKMANN, &KULLA_CONTY, &TURQUIN, &COAT];
 }
 impl InZoo for Dielectric<f32> {
     const SPECIES: &'static [&'static Species] = &[&GLASS];
 }
 impl InZoo for RoughDielectric<f32> {
-    const SPECIES: &'static [&'static Species] = &[&GROUND];
+    const SPECIES: &'static [&'static Species] = &[&GROUND, &GROUND_BECKMANN];
 }
 
 impl InZoo for Phong<f32> {
@@ -463,6 +487,8 @@ pub(crate) fn rows() -> Vec<Row> {
         row("compensated 1x1 white", &[(1.0, &KULLA_CONTY, &[1.0, 1.0, 1.0, 1.0, 1.0])]),
         row("compensated 0.6x0.6 gold", &[(1.0, &KULLA_CONTY, &[0.6, 0.6, 0.9, 0.6, 0.3])]),
         row("compensated 0.3x0.9 white", &[(1.0, &KULLA_CONTY, &[0.3, 0.9, 1.0, 1.0, 1.0])]),
+        row("turquin 0.5x0.5 white", &[(1.0, &TURQUIN, &[0.5, 0.5, 1.0, 1.0, 1.0])]),
+        row("turquin 1x1 gold", &[(1.0, &TURQUIN, &[1.0, 1.0, 0.9, 0.6, 0.3])]),
         row("conductor f82", &[(1.0, &F82, &[0.3, 0.2, 0.9, 0.6, 0.4, 0.5, 0.8, 1.0])]),
         row("conductor separable", &[(1.0, &SEPARABLE, &[0.6, 0.3, 0.9, 0.6, 0.4])]),
         row("coat", &[(1.0, &COAT, &[0.2, 0.2, 1.5])]),
@@ -477,6 +503,7 @@ pub(crate) fn rows() -> Vec<Row> {
         rows.push(row(format!("ground glass {x}x{y} {eta}"), &[(1.0, &GROUND, &[x, y, eta])]));
     }
     rows.extend([
+        row("ground glass beckmann 0.3x0.1 1.5", &[(1.0, &GROUND_BECKMANN, &[0.3, 0.1, 1.5])]),
         row("ground glass between equal indices", &[(1.0, &GROUND, &[0.3, 0.3, 1.0])]),
         row("glass and lambert", &[(0.5, &GLASS, &[1.5]), (0.5, &LAMBERT, &COLOUR)]),
         row("half lambert half mirror", &[(0.5, &LAMBERT, &WHITE), (0.5, &MIRROR, &WHITE)]),

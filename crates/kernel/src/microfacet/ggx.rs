@@ -15,7 +15,7 @@
 //! Nothing is formed by subtraction: D comes from the unnormalised half vector, which stays exact near the mirror
 //! direction. Cost: D one division, s one root, a visible normal one division and one root.
 
-use super::{ALPHA_MIN, widths_in_domain};
+use super::widths_in_domain;
 use crate::math::sin_cos_turns;
 use crate::real::{Mask, Real};
 use crate::vec3::Vec3;
@@ -41,8 +41,8 @@ impl<R: Real> Ggx<R> {
             h_length2 = R::select(tiny, R::ONE, h_length2);
         }
         // With a = α_x α_y: D = a³|h|⁴/(π (α_y²h_x² + α_x²h_y² + a²h_z²)²), one division instead of four. One factor α is
-        // lifted by 1/α_min, so that the squares of the least widths do not underflow.
-        let lift = R::lit(1.0 / ALPHA_MIN);
+        // lifted by about 1/α_min, so that the squares of the least widths do not underflow; a power of two rounds nothing.
+        let lift = R::lit(134_217_728.0); // 2²⁷
         let (alpha_x, alpha_y) = (self.alpha_x * lift, self.alpha_y * lift);
         let a = alpha_x * self.alpha_y;
         let x = alpha_y * h.x;
