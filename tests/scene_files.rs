@@ -176,8 +176,8 @@ fn values_out_of_range_are_refused_with_their_line() {
             "scene.toml:2: type \"glass\" is not possible here; known are \"diffuse\", \"eon\", \"mirror\", \"phong\", \"conductor\", \"dielectric\", \"mix\"",
         ),
         (
-            "[materials.a]\ntype = \"conductor\"\nf0 = 0.9\nroughness = 0.001",
-            "scene.toml:4: \"roughness\" gives an alpha below 0.0001: use type = \"mirror\"",
+            "[materials.a]\ntype = \"conductor\"\nf0 = 0.9\nroughness = 0.00001",
+            "scene.toml:4: \"roughness\" gives an alpha below 1e-8: use type = \"mirror\", or a dielectric without roughness",
         ),
     ];
     for (text, expected) in cases {

@@ -208,31 +208,31 @@ macro_rules! any_lobe {
         )*}
 
         impl<R: Real> Lobe<R> for AnyLobe<R> {
-            #[inline(always)]
+            #[inline]
             fn eval(&self, wo: Vec3<R>, wi: Vec3<R>) -> Value<R> {
                 match self {$( Self::$model(lobe) => lobe.eval(wo, wi), )*}
             }
-            #[inline(always)]
+            #[inline]
             fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R> {
                 match self {$( Self::$model(lobe) => lobe.sample(wo, u), )*}
             }
-            #[inline(always)]
+            #[inline]
             fn prepare(&self, wo: Vec3<R>) -> Prepared<R> {
                 match self {$( Self::$model(lobe) => lobe.prepare(wo), )*}
             }
-            #[inline(always)]
+            #[inline]
             fn eval_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
                 match self {$( Self::$model(lobe) => lobe.eval_prepared(wo, prepared, wi), )*}
             }
-            #[inline(always)]
+            #[inline]
             fn sample_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
                 match self {$( Self::$model(lobe) => lobe.sample_prepared(wo, prepared, u), )*}
             }
-            #[inline(always)]
+            #[inline]
             fn discrete(&self, wo: Vec3<R>, event: &Event<R>) -> Value<R> {
                 match self {$( Self::$model(lobe) => lobe.discrete(wo, event), )*}
             }
-            #[inline(always)]
+            #[inline]
             fn albedo_estimate(&self, wo: Vec3<R>) -> Rgb<R> {
                 match self {$( Self::$model(lobe) => lobe.albedo_estimate(wo), )*}
             }

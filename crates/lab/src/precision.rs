@@ -14,11 +14,10 @@ use gonio_kernel::Vec3;
 pub(crate) fn errors(single: View, wo: Dir, wi: Dir) -> [f64; 4] {
     let (rough, exact) = (single.probe.eval(wo, wi).numbers(), single.reference.eval(wo, wi).numbers());
     let moves = sensitivity(single.reference, single.nudged, wo, wi);
-    // Where f32 itself runs out of normal numbers, its rounding is absolute.
-    let unit = |i: usize| (f64::from(f32::EPSILON) * exact[i]).max(moves[i]).max(f64::from(f32::MIN_POSITIVE));
-    // Exactly 0 has no precision to keep: Schlick's fifth power may be 1e-36 where a cosine rounds to 1 on one side alone.
-    let is_nothing = |i: usize| exact[i] == 0.0 && rough[i].abs() < 1e-30;
-    std::array::from_fn(|i| if is_nothing(i) { 0.0 } else { (rough[i] - exact[i]).abs() / unit(i) })
+    // Towards the end of f32's range rounding is absolute: exponentials have been flushed, and Schlick's fifth power is 1e-36
+    // where a cosine rounds to 1 on one side alone.
+    let unit = |i: usize| (f64::from(f32::EPSILON) * exact[i]).max(moves[i]).max(1e-30);
+    std::array::from_fn(|i| (rough[i] - exact[i]).abs() / unit(i))
 }
 
 /// The largest error in units of max(eps f, s).
