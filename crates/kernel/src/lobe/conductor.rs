@@ -144,7 +144,8 @@ impl<R: Real> Lobe<R> for Conductor<R> {
     }
 
     /// What is compensated exceeds all light by 1e-4 at most if isotropic, else by 4 %; and the polynomial of its losses adds
-    /// to their rounding (12.8 units are the most that was seen; 1 − E in Turquin's denominator triples them at α = 1).
+    /// to their rounding, which shows far from the mirror direction, where they are all there is; 1 − E in Turquin's denominator
+    /// triples them at α = 1.
     #[inline(always)]
     fn properties(&self) -> Properties {
         let [alpha_x, alpha_y] = self.microfacets.widths();
@@ -156,7 +157,7 @@ impl<R: Real> Lobe<R> for Conductor<R> {
         };
         let units = match self.compensation {
             Compensation::None => 8.0,
-            Compensation::KullaConty => 16.0,
+            Compensation::KullaConty => 32.0,
             Compensation::Turquin => 48.0,
         };
         Properties { reciprocal: self.compensation != Compensation::Turquin, excess, units, ..Properties::LAWFUL }
