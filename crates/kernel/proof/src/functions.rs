@@ -61,6 +61,8 @@ macro_rules! functions {
         type R = $real;
         type Truth = <R as Real>::Mask;
         export! { $real:
+            energy::sample_multiple(alpha: R, u: [R; 2]) -> Vec3<R>;
+            energy::pdf_multiple(alpha: R, cos: R) -> R;
             energy::missing_avg(alpha: R) -> R;
             energy::albedo(cos: R, alpha: R) -> R;
             energy::albedo_avg(alpha: R) -> R;
