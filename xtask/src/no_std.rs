@@ -81,17 +81,27 @@ fn expected() -> Result<BTreeSet<String>, String> {
     Ok(each.chain(OTHERS.map(str::to_owned)).collect())
 }
 
-/// Both sets must be the same, except that copying may have been inlined.
+/// Both sets must be the same, except that copying may have been inlined, and that the optimiser may have kept functions of the
+/// kernel, of the proof and of `core` apart that it could have inlined. A panic in one of them would not have linked either.
 fn compare(expected: &BTreeSet<String>, found: &BTreeSet<String>) -> Result<(), String> {
     let missing: Vec<_> = expected.difference(found).filter(|name| !name.starts_with("mem")).collect();
     if !missing.is_empty() {
         return Err(format!("not proved: {missing:?}. Add what is missing to crates/kernel/proof/src."));
     }
-    let surplus: Vec<_> = found.difference(expected).collect();
+    let surplus: Vec<_> = found.difference(expected).filter(|name| !is_kept_apart(name)).collect();
     if !surplus.is_empty() {
         return Err(format!("functions that nobody allowed: {surplus:?}"));
     }
     Ok(())
+}
+
+/// A mangled function of the kernel, the proof or `core`; of nothing that needs an allocator or a system.
+fn is_kept_apart(name: &str) -> bool {
+    let ours = ["gonio_kernel", "4core", "$LT$core.."];
+    name.starts_with("_ZN")
+        && ours.iter().any(|part| name.contains(part))
+        && !name.contains("5alloc")
+        && !name.contains("3std")
 }
 
 #[cfg(test)]
@@ -121,5 +131,14 @@ mod tests {
             assert!(expected.contains(name), "{name} is not among {expected:?}");
         }
         assert!(!expected.iter().any(|name| name.starts_with("AnyLobe")));
+    }
+
+    #[test]
+    fn functions_of_the_kernel_may_stand_apart_and_those_of_std_may_not() {
+        assert!(is_kept_apart("_ZN12gonio_kernel6energy13conductor_avg17h0a0785e546ae1bebE"));
+        assert!(is_kept_apart("_ZN91_$LT$core..slice..iter..Iter$LT$T$GT$4fold17h078780c9aecb34bfE"));
+        assert!(!is_kept_apart("_ZN3std2io5stdio6_print17h0123456789abcdefE"));
+        assert!(!is_kept_apart("_ZN5alloc7raw_vec12handle_error17h0123456789abcdefE"));
+        assert!(!is_kept_apart("malloc"));
     }
 }
