@@ -87,6 +87,12 @@ pub fn both_above<R: Real>(wo: Vec3<R>, wi: Vec3<R>) -> R::Mask {
     wo.z.gt(R::ZERO) & wi.z.gt(R::ZERO)
 }
 
+/// w with its z mirrored where wo is below the surface: seen so, wo is above.
+#[inline(always)]
+pub(crate) fn turned<R: Real>(wo: Vec3<R>, w: Vec3<R>) -> Vec3<R> {
+    Vec3::new(w.x, w.y, R::select(wo.z.lt(R::ZERO), -w.z, w.z))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

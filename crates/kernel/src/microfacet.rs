@@ -18,7 +18,7 @@ mod ggx;
 pub use beckmann::Beckmann;
 pub use ggx::Ggx;
 
-use crate::real::Real;
+use crate::real::{Mask, Real};
 use crate::vec3::Vec3;
 
 /// The smallest width of microfacets: below, even `f64` directions are coarser than the lobe, and the surface is a mirror.
@@ -135,6 +135,17 @@ pub fn reflect<R: Real>(wo: Vec3<R>, m: Vec3<R>) -> Vec3<R> {
     let m = Vec3::select(ok, m, Vec3::unit_z());
     let twice = R::lit(2.0) * wo.dot(m) / R::select(ok, length2, R::ONE);
     m * twice - wo
+}
+
+/// h and |h|², as they are unless both directions lie nearly in the surface and are opposite: then the squares of h would
+/// underflow, and as D does not depend on |h|, h becomes unit.
+#[inline(always)]
+fn lengthened<R: Real>(h: Vec3<R>, h_length2: R) -> (Vec3<R>, R) {
+    let tiny = h_length2.lt(R::lit(1e-12));
+    if !tiny.any() {
+        return (h, h_length2);
+    }
+    (Vec3::select(tiny, h.normalize_or(Vec3::unit_z()), h), R::select(tiny, R::ONE, h_length2))
 }
 
 /// Whether both widths lie in [1e-8, 1], 1e-8 as rounded to `f32` included.

@@ -19,6 +19,7 @@
 
 use super::dielectric::relative_index;
 use super::{Event, Lobe, Prepared, Sample, Value};
+use crate::frame::turned;
 use crate::fresnel::{index_in_domain, interface, refracted_cosine};
 use crate::microfacet::{Masking, Microfacets, pdf_visible_reflected, reflect, vis_cos_i};
 use crate::real::Real;
@@ -56,12 +57,6 @@ impl<R: Real> RoughDielectric<R> {
     }
 }
 
-/// w turned so that wo is above the surface.
-#[inline(always)]
-fn upright<R: Real>(wo: Vec3<R>, w: Vec3<R>) -> Vec3<R> {
-    Vec3::new(w.x, w.y, R::select(wo.z.lt(R::ZERO), -w.z, w.z))
-}
-
 impl<R: Real> Lobe<R> for RoughDielectric<R> {
     /// s(wo) and η seen from wo.
     #[inline(always)]
@@ -72,7 +67,7 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
     #[inline]
     fn eval_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
         let Prepared([s_o, eta, ..]) = *prepared;
-        let (wi, wo) = (upright(wo, wi), upright(wo, wo));
+        let (wi, wo) = (turned(wo, wi), turned(wo, wo));
         let through = wi.z.lt(R::ZERO);
         let (c_o, c_i) = (wo.z, wi.z.abs());
 
@@ -114,7 +109,7 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
     #[inline]
     fn sample_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
         let Prepared([s_o, eta, ..]) = *prepared;
-        let up = upright(wo, wo);
+        let up = turned(wo, wo);
         let m = self.microfacets.sample_visible(up, s_o, R::ONE, [u[1], u[2]]).normalize_or(Vec3::unit_z());
         let cos_m = up.dot(m).max(R::ZERO).min(R::ONE);
         let cos_t = refracted_cosine(cos_m, eta);
@@ -122,7 +117,7 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
         let reflects = u[0].lt(at.reflected);
         let thin = eta.recip();
         let refracted = (m * cos_m.mul_add(thin, -cos_t) - up * thin).normalize_or(-Vec3::unit_z());
-        let wi = upright(wo, Vec3::select(reflects, reflect(up, m), refracted));
+        let wi = turned(wo, Vec3::select(reflects, reflect(up, m), refracted));
         let side = wo.z * wi.z;
         let right_side = (side.gt(R::ZERO) & reflects) | (side.lt(R::ZERO) & !reflects & at.transmitted.gt(R::ZERO));
 

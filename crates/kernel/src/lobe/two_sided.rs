@@ -3,6 +3,7 @@
 //! Seen from below, wo and wi are mirrored in the surface, and so is what is sampled. Reciprocity and energy are the lobe's.
 
 use super::{Event, Lobe, Prepared, Properties, Sample, Value};
+use crate::frame::turned;
 use crate::real::Real;
 use crate::rgb::Rgb;
 use crate::vec3::Vec3;
@@ -10,12 +11,6 @@ use crate::vec3::Vec3;
 /// A lobe on both sides of the surface. Meant for lobes that only reflect; a [`crate::Surface`] can be one too.
 #[derive(Clone, Copy, Debug)]
 pub struct TwoSided<L>(pub L);
-
-/// w with its z mirrored where wo is below the surface.
-#[inline(always)]
-fn turned<R: Real>(wo: Vec3<R>, w: Vec3<R>) -> Vec3<R> {
-    Vec3::new(w.x, w.y, R::select(wo.z.lt(R::ZERO), -w.z, w.z))
-}
 
 impl<R: Real, L: Lobe<R>> Lobe<R> for TwoSided<L> {
     #[inline(always)]

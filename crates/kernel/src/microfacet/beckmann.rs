@@ -21,8 +21,9 @@
 //! **Cost.** `d`: one division, one exponential. `smith_length`: one division, one root, one exponential. `sample_visible`
 //! in `f32`: five divisions, five roots, five exponentials, one logarithm, one sine and cosine.
 
+use super::{lengthened, widths_in_domain};
 use crate::math::{erf_and_exp, exp, flushed_square, ln, scaled_erfc, sin_cos_turns};
-use crate::real::{Mask, Precision, Real};
+use crate::real::{Precision, Real};
 use crate::vec3::Vec3;
 use core::f64::consts::{FRAC_1_PI, FRAC_2_SQRT_PI};
 
@@ -39,13 +40,7 @@ impl<R: Real> Beckmann<R> {
     /// D of the half vector h = wo + wi with h.z ≥ 0, not normalised, with |h|² given \[1/sr\].
     #[inline]
     pub fn d(&self, h: Vec3<R>, h_length2: R) -> R {
-        // Both directions nearly in the surface and opposite: the squares of h would underflow, D does not depend on |h|.
-        let tiny = h_length2.lt(R::lit(1e-12));
-        let (mut h, mut h_length2) = (h, h_length2);
-        if tiny.any() {
-            h = Vec3::select(tiny, h.normalize_or(Vec3::unit_z()), h);
-            h_length2 = R::select(tiny, R::ONE, h_length2);
-        }
+        let (h, h_length2) = lengthened(h, h_length2);
         // Where h lies that close to the horizon, D is 0 by 1e20 in the exponent; and all quotients stay finite.
         let z = h.z.max(R::lit(1e-16));
         let a = self.alpha_x * self.alpha_y;
@@ -97,7 +92,7 @@ impl<R: Real> Beckmann<R> {
     /// Whether both widths lie in [1e-8, 1].
     #[inline(always)]
     pub fn domain(&self) -> R::Mask {
-        super::widths_in_domain(self.alpha_x, self.alpha_y)
+        widths_in_domain(self.alpha_x, self.alpha_y)
     }
 }
 

@@ -15,9 +15,9 @@
 //! Nothing is formed by subtraction: D comes from the unnormalised half vector, which stays exact near the mirror
 //! direction. Cost: D one division, s one root, a visible normal one division and one root.
 
-use super::widths_in_domain;
+use super::{lengthened, widths_in_domain};
 use crate::math::sin_cos_turns;
-use crate::real::{Mask, Real};
+use crate::real::Real;
 use crate::vec3::Vec3;
 
 /// A GGX surface of widths alpha_x and alpha_y, each in [1e-8, 1].
@@ -33,13 +33,7 @@ impl<R: Real> Ggx<R> {
     /// D of the normal along h (any length, h.z ≥ 0), with |h|² given \[1/sr\].
     #[inline(always)]
     pub fn d(&self, h: Vec3<R>, h_length2: R) -> R {
-        // Both directions nearly in the surface and opposite: the squares of h would underflow, D does not depend on |h|.
-        let tiny = h_length2.lt(R::lit(1e-12));
-        let (mut h, mut h_length2) = (h, h_length2);
-        if tiny.any() {
-            h = Vec3::select(tiny, h.normalize_or(Vec3::unit_z()), h);
-            h_length2 = R::select(tiny, R::ONE, h_length2);
-        }
+        let (h, h_length2) = lengthened(h, h_length2);
         // With a = α_x α_y: D = a³|h|⁴/(π (α_y²h_x² + α_x²h_y² + a²h_z²)²), one division instead of four. One factor α is
         // lifted by about 1/α_min, so that the squares of the least widths do not underflow; a power of two rounds nothing.
         let lift = R::lit(134_217_728.0); // 2²⁷
