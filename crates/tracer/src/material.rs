@@ -17,6 +17,8 @@ use gonio_kernel::{F32x8, Real, Rgb, Surface};
 #[derive(Clone, Debug)]
 pub(crate) struct PreparedMaterial {
     pub(crate) spec: Material,
+    /// Its lobes.
+    parts: Vec<Part>,
     /// Equal numbers have equal sequences of models.
     pub(crate) variant: u32,
     /// The surface, if no texture is involved.
@@ -41,35 +43,37 @@ fn is_anisotropic(model: &Model) -> bool {
 impl PreparedMaterial {
     /// The materials in the order of their variants, and where each of the scene's went.
     pub(crate) fn prepare(scene: &Scene) -> (Vec<Self>, Vec<u32>) {
-        let pattern = |m: &Material| m.lobes.iter().map(|l| taken_apart(&l.model).0).collect::<Vec<_>>();
+        let parts_of: Vec<Vec<Part>> = scene.materials.iter().map(parts).collect();
         // Kinds have no order of their own: variants are numbered as the scene first shows them.
         let mut variants: Vec<Vec<Kind>> = Vec::new();
-        let mut number = |m: &Material| {
-            let pattern = pattern(m);
+        let mut number = |parts: &Vec<Part>| {
+            let pattern = parts.iter().map(|part| part.kind).collect();
             let known = variants.iter().position(|v| *v == pattern);
             known.unwrap_or_else(|| {
                 variants.push(pattern);
                 variants.len() - 1
             })
         };
-        let variant_of: Vec<usize> = scene.materials.iter().map(&mut number).collect();
+        let variant_of: Vec<usize> = parts_of.iter().map(&mut number).collect();
         let mut by_variant: Vec<usize> = (0..scene.materials.len()).collect();
         by_variant.sort_by_key(|&i| variant_of[i]); // stable: the scene's order within a variant
         let mut order = vec![0; scene.materials.len()];
         let mut prepared: Vec<Self> = Vec::with_capacity(scene.materials.len());
         for (place, &i) in by_variant.iter().enumerate() {
             order[i] = place as u32;
-            let spec = scene.materials[i].clone();
+            let (spec, parts) = (&scene.materials[i], parts_of[i].clone());
+            let has = |is: fn(&LobeSpec) -> bool| spec.lobes.iter().any(is);
             prepared.push(Self {
                 variant: variant_of[i] as u32,
-                surface: constant_surface(&spec),
+                surface: surface_of(&parts),
                 emission: spec.emission,
                 two_sided: spec.two_sided,
-                textured: spec.lobes.iter().any(|l| matches!(color_of(&l.model), Some(Color::Texture { .. }))),
-                anisotropic: spec.lobes.iter().any(|l| is_anisotropic(&l.model)),
-                discrete: spec.lobes.iter().any(|l| matches!(l.model, Model::Mirror { .. } | Model::Dielectric { .. })),
-                transmits: spec.lobes.iter().any(|l| matches!(l.model, Model::Dielectric { .. })),
-                spec,
+                textured: parts.iter().any(Part::is_textured),
+                anisotropic: has(|l| is_anisotropic(&l.model)),
+                discrete: has(|l| matches!(l.model, Model::Mirror { .. } | Model::Dielectric { .. })),
+                transmits: has(|l| matches!(l.model, Model::Dielectric { .. })),
+                spec: spec.clone(),
+                parts,
             });
         }
         (prepared, order)
@@ -83,35 +87,63 @@ impl PreparedMaterial {
 
 /// The kernel surface of a material without textures, in any precision; `None` if it has textures.
 pub fn constant_surface<R: Real>(material: &Material) -> Option<Surface<R>> {
-    let constant = |l: &LobeSpec| !matches!(color_of(&l.model), Some(Color::Texture { .. }));
-    material.lobes.iter().all(constant).then(|| {
-        assemble(
-            material,
-            |slot, i| R::lit(f64::from(number_of(&material.lobes[slot], i))),
-            |slot| match color_of(&material.lobes[slot].model) {
-                Some(Color::Constant(c)) => c.map(|x| R::lit(f64::from(x))),
+    surface_of(&parts(material))
+}
+
+fn surface_of<R: Real>(parts: &[Part]) -> Option<Surface<R>> {
+    let constant = |x: f32| R::lit(f64::from(x));
+    (!parts.iter().any(Part::is_textured)).then(|| {
+        parts.iter().fold(Surface::black(), |surface, part| {
+            let color = match part.color {
+                Some(Color::Constant(c)) => c.map(constant),
                 _ => Rgb::zero(),
-            },
-        )
+            };
+            surface.with(constant(part.weight), put_together(part.kind, color, part.numbers.map(constant)))
+        })
     })
 }
 
 /// The surfaces of eight materials of one variant at eight texture coordinates.
-pub(crate) fn lane_surface(materials: [&Material; 8], textures: &[Texture], uv: [F32x8; 2]) -> Surface<F32x8> {
+pub(crate) fn lane_surface(
+    materials: [&PreparedMaterial; F32x8::LANES],
+    textures: &[Texture],
+    uv: [F32x8; 2],
+) -> Surface<F32x8> {
     let [u, v] = uv.map(F32x8::to_array);
-    assemble(
-        materials[0],
-        |slot, i| F32x8::new(materials.map(|m| number_of(&m.lobes[slot], i))),
-        |slot| {
-            let colors: [Rgb<f32>; 8] =
-                std::array::from_fn(|lane| match color_of(&materials[lane].lobes[slot].model) {
-                    Some(Color::Constant(c)) => c,
-                    Some(Color::Texture { texture, scale }) => textures[texture].sample(u[lane], v[lane]) * scale,
-                    None => Rgb::zero(),
-                });
-            Rgb::new(F32x8::new(colors.map(|c| c.r)), F32x8::new(colors.map(|c| c.g)), F32x8::new(colors.map(|c| c.b)))
-        },
-    )
+    let slots = 0..materials[0].parts.len();
+    slots.fold(Surface::black(), |surface, slot| {
+        let parts = materials.map(|m| &m.parts[slot]);
+        let color = |lane: usize| match parts[lane].color {
+            Some(Color::Constant(c)) => c,
+            Some(Color::Texture { texture, scale }) => textures[texture].sample(u[lane], v[lane]) * scale,
+            None => Rgb::zero(),
+        };
+        let colors: [Rgb<f32>; F32x8::LANES] = std::array::from_fn(color);
+        let color =
+            Rgb::new(F32x8::new(colors.map(|c| c.r)), F32x8::new(colors.map(|c| c.g)), F32x8::new(colors.map(|c| c.b)));
+        let numbers = std::array::from_fn(|i| F32x8::new(parts.map(|part| part.numbers[i])));
+        surface.with(F32x8::new(parts.map(|part| part.weight)), put_together(parts[0].kind, color, numbers))
+    })
+}
+
+/// A lobe taken apart: what decides its code, and numbers that may differ from lane to lane.
+#[derive(Clone, Debug)]
+struct Part {
+    kind: Kind,
+    color: Option<Color>,
+    /// Widths first, then what follows in the kernel's lobe.
+    numbers: [f32; NUMBERS],
+    weight: f32,
+}
+
+impl Part {
+    fn is_textured(&self) -> bool {
+        matches!(self.color, Some(Color::Texture { .. }))
+    }
+}
+
+fn parts(material: &Material) -> Vec<Part> {
+    material.lobes.iter().map(taken_apart).collect()
 }
 
 /// What decides which code a lobe runs: equal for lobes that can share a lane batch. All else about it are numbers.
@@ -138,14 +170,13 @@ enum FresnelKind {
 /// The most numbers that a lobe has.
 const NUMBERS: usize = 8;
 
-/// A model as its kind, its colour and its numbers: widths first, then what follows in the kernel's lobe.
-fn taken_apart(model: &Model) -> (Kind, Option<Color>, [f32; NUMBERS]) {
+fn taken_apart(lobe: &LobeSpec) -> Part {
     let numbers = |given: &[f32]| {
         let mut all = [0.0; NUMBERS];
         all[..given.len()].copy_from_slice(given);
         all
     };
-    match *model {
+    let (kind, color, numbers) = match lobe.model {
         Model::Diffuse { base_color } => (Kind::Diffuse, Some(base_color), numbers(&[])),
         Model::Eon { base_color, roughness, directional } => {
             (Kind::Eon(directional), Some(base_color), numbers(&[roughness]))
@@ -169,7 +200,8 @@ fn taken_apart(model: &Model) -> (Kind, Option<Color>, [f32; NUMBERS]) {
             let MicrofacetSpec { distribution, masking, alpha_x, alpha_y } = microfacets;
             (Kind::RoughDielectric { distribution, masking }, None, numbers(&[alpha_x, alpha_y, ior]))
         }
-    }
+    };
+    Part { kind, color, numbers, weight: lobe.weight }
 }
 
 /// The one place where scene models become kernel lobes.
@@ -201,29 +233,4 @@ fn put_together<R: Real>(kind: Kind, color: Rgb<R>, p: [R; NUMBERS]) -> AnyLobe<
             RoughDielectric::new(microfacets(distribution), p[2]).with_masking(masking).into()
         }
     }
-}
-
-/// A surface of the pattern's kinds: `number(slot, i)` is number i of the slot's lobe, the weight if i is [`NUMBERS`], and
-/// `color(slot)` its colour.
-fn assemble<R: Real>(
-    pattern: &Material,
-    number: impl Fn(usize, usize) -> R,
-    color: impl Fn(usize) -> Rgb<R>,
-) -> Surface<R> {
-    let mut surface = Surface::black();
-    for (slot, lobe) in pattern.lobes.iter().enumerate() {
-        let kind = taken_apart(&lobe.model).0;
-        let numbers = std::array::from_fn(|i| number(slot, i));
-        surface = surface.with(number(slot, NUMBERS), put_together(kind, color(slot), numbers));
-    }
-    surface
-}
-
-/// Number i of a lobe as [`assemble`] asks for it.
-fn number_of(lobe: &LobeSpec, i: usize) -> f32 {
-    taken_apart(&lobe.model).2.get(i).copied().unwrap_or(lobe.weight)
-}
-
-fn color_of(model: &Model) -> Option<Color> {
-    taken_apart(model).1
 }

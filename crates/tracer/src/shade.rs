@@ -131,7 +131,7 @@ pub(crate) fn hit(
     let surface = match &materials[0].surface {
         Some(surface) if alike => surface,
         _ => {
-            looked_up = lane_surface(materials.map(|m| &m.spec), &ctx.world.textures, points.uv);
+            looked_up = lane_surface(materials, &ctx.world.textures, points.uv);
             &looked_up
         }
     };
@@ -157,6 +157,7 @@ pub(crate) fn hit(
 
     let local = points.frame.to_local(wo);
     let closure = Closure::new(surface, local);
+    let origin = points.point.off_plane(points.normal);
 
     let lights = &ctx.world.lights;
     if (ctx.plan.area_lights || ctx.plan.environment) && ctx.techniques != Techniques::Scattering {
@@ -173,7 +174,7 @@ pub(crate) fn hit(
             }
             let place = [u.unit(2), u.unit(3)];
             let asked = match (kind, lights.shining_sky()) {
-                (false, _) => ask_emitter(ctx, &points, u.0[1], rest, place),
+                (false, _) => ask_emitter(ctx, &points, origin, u.0[1], rest, place),
                 (true, None) => continue,
                 (true, Some(PreparedSky::Constant(sky))) => ask_sky(*sky, &points, place, p_environment),
                 (true, Some(PreparedSky::Map(map))) => {
@@ -185,14 +186,14 @@ pub(crate) fn hit(
             let value = closure.eval(wi);
             let weight = ctx.techniques.weight(Techniques::Lights, asked.pdf, value.pdf) / asked.pdf;
             let arriving = incoming.throughput * value.f_cos * asked.radiance * weight;
-            let (origin, right_side) = leaving(ctx, &points, asked.wi, local.z * wi.z);
+            let (origin, right_side) = leaving(ctx, &points, origin, asked.wi, local.z * wi.z);
             let mask = mask & asked.mask & right_side & arriving.largest().gt(F32x8::ZERO);
             if mask.any() {
                 shadow.push(mask, (origin, asked.wi, asked.t_max), arriving, &incoming.path);
             }
         }
     }
-    scatter(ctx, depth, live, &incoming, &points, &closure, local, next);
+    scatter(ctx, depth, live, &incoming, &points, &closure, local, origin, next);
     live.to_bits().count_ones()
 }
 
@@ -243,18 +244,24 @@ fn receive_emission(
     gathered.add(&incoming.path, mask, incoming.throughput * emission * incoming.weight(ctx.techniques, pdf_light));
 }
 
-/// Where a ray in the direction wi starts, and whether it leaves on the side on which the closure scattered it: `sides` is the
-/// product of the local cosines. Reflection or transmission is decided by the geometric side; light that the shading normal
+/// Where a ray in the direction wi starts (at `origin` if it stays on wo's side), and whether it leaves on the side on which the
+/// closure scattered it: `sides` is the product of the local cosines. Reflection or transmission is decided by the geometric side; light that the shading normal
 /// reflects into the surface, or refracts out of it, carries nothing.
 #[inline(always)]
-fn leaving(ctx: &Context, points: &ShadingPoints, wi: Vec3<F32x8>, sides: F32x8) -> (Vec3<F32x8>, Mask8) {
+fn leaving(
+    ctx: &Context,
+    points: &ShadingPoints,
+    origin: Vec3<F32x8>,
+    wi: Vec3<F32x8>,
+    sides: F32x8,
+) -> (Vec3<F32x8>, Mask8) {
     let above = points.normal.dot(wi).gt(F32x8::ZERO);
     if !ctx.plan.transmission {
-        return (points.point.off_plane(points.normal), above);
+        return (origin, above);
     }
     let through = sides.lt(F32x8::ZERO);
-    let normal = Vec3::select(above, points.normal, -points.normal);
-    (points.point.off_plane(normal), (above & !through) | (!above & through))
+    let start = Vec3::select(above, origin, points.point.off_plane(-points.normal));
+    (start, (above & !through) | (!above & through))
 }
 
 /// A direction in which light is asked for.
@@ -295,16 +302,23 @@ fn ask_map(map: &EnvironmentMap, toss: &Random4, place: &Random4, probability: F
 
 /// A uniform point of an emitting triangle chosen by power.
 #[inline(always)]
-fn ask_emitter(ctx: &Context, points: &ShadingPoints, slot: U32x8, toss: F32x8, place: [F32x8; 2]) -> Asked {
+fn ask_emitter(
+    ctx: &Context,
+    points: &ShadingPoints,
+    origin: Vec3<F32x8>,
+    slot: U32x8,
+    toss: F32x8,
+    place: [F32x8; 2],
+) -> Asked {
     let emitters = ctx.world.lights.pick(slot, toss);
     let normal = emitters.normal;
     let target = SurfacePoint::new(&emitters.corners, sample_uniform_triangle(place)).off_plane(normal);
     // The ray starts on the side where the light is.
-    let beside = points.normal.dot(target - points.point.position).lt(F32x8::ZERO);
     let start = if ctx.plan.transmission {
-        points.point.off_plane(Vec3::select(beside, -points.normal, points.normal))
+        let beside = points.normal.dot(target - points.point.position).lt(F32x8::ZERO);
+        Vec3::select(beside, points.point.off_plane(-points.normal), origin)
     } else {
-        points.point.off_plane(points.normal)
+        origin
     };
     let to = target - start;
     let distance2 = to.length2();
@@ -331,6 +345,7 @@ fn scatter(
     points: &ShadingPoints,
     closure: &Closure<F32x8>,
     local: Vec3<F32x8>,
+    origin: Vec3<F32x8>,
     next: &mut Queue,
 ) {
     let u = ctx.sampler.draw(incoming.pixel, incoming.sample, depth, Purpose::Scatter);
@@ -344,7 +359,7 @@ fn scatter(
         continuous = live & !sample.event.discrete;
     }
     let wi = points.frame.to_world(sample.wi);
-    let (origin, right_side) = leaving(ctx, points, wi, local.z * sample.wi.z);
+    let (origin, right_side) = leaving(ctx, points, origin, wi, local.z * sample.wi.z);
     let mut alive = live & !sample.event.failed & right_side & value.pdf.gt(F32x8::ZERO);
     let mut throughput = incoming.throughput * value.f_cos * value.pdf.recip();
     alive = alive & throughput.largest().gt(F32x8::ZERO);
