@@ -191,13 +191,35 @@ pub(crate) fn one_to_one(lobe: &AnyLobe<f32>) -> bool {
     }
 }
 
-/// The albedo, where it is the same at all angles.
-pub(crate) fn known_albedo(lobe: &AnyLobe<f32>) -> Option<Rgb<f32>> {
+/// Whether exchanging the directions exchanges the operands of commutative operations only: see the reciprocity instrument.
+pub(crate) fn symmetric(lobe: &AnyLobe<f32>) -> bool {
+    !matches!(lobe, AnyLobe::RoughDielectric(_))
+}
+
+/// The albedo, where it is known and the same at all angles: of Lambert, mirror, exact EON that is white or smooth, and a white
+/// isotropic metal whose multiple scattering is given back.
+pub(crate) fn known_albedo(lobe: &AnyLobe<f32>) -> Option<Rgb<f64>> {
+    let white = Rgb::splat(1.0);
     match lobe {
-        AnyLobe::Lambert(l) => Some(l.albedo),
-        AnyLobe::Mirror(l) => Some(l.reflectance),
+        AnyLobe::Lambert(l) => Some(l.albedo.map(f64::from)),
+        AnyLobe::Mirror(l) => Some(l.reflectance.map(f64::from)),
+        AnyLobe::Eon(l) if l.directional == eon::Directional::Exact && (l.roughness == 0.0 || l.albedo == white) => {
+            Some(l.albedo.map(f64::from))
+        }
+        AnyLobe::Conductor(Conductor {
+            microfacets: Microfacets::Ggx(ggx),
+            fresnel: Fresnel::Schlick { f0 },
+            compensation: Compensation::KullaConty,
+            ..
+        }) if ggx.alpha_x == ggx.alpha_y && *f0 == white => Some(Rgb::splat(1.0)),
         _ => None,
     }
+}
+
+/// How far the albedo may lie from its known value. EON's closed form holds for unit directions, and those of the instruments are
+/// unit to the precision of `f32` only.
+pub(crate) fn slack(lobe: &AnyLobe<f32>) -> f64 {
+    if matches!(lobe, AnyLobe::Eon(_)) { 1e-7 } else { 0.0 }
 }
 
 /// The largest weight of a sample; infinite where none is promised.

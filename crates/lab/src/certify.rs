@@ -147,7 +147,7 @@ pub fn certify<L: Lobe<f32> + Sync>(name: &str, lobe: &L, options: &Options) -> 
 pub fn certify_surface(name: &str, surface: &Surface<f32>, options: &Options) -> Certificate {
     let subject = Subject::of_surface(name, surface);
     let claims = subject.claims;
-    let ranges = Mutex::new(BTreeMap::new());
+    let (furnace, ranges) = (white::of_surface(surface), Mutex::new(BTreeMap::new()));
     let mut tasks = general_tasks(&subject);
     if subject.single.is_none() {
         let reason = "narrower than the lattice of f32 directions: a mirror there, and sound over the ranges below";
@@ -155,7 +155,8 @@ pub fn certify_surface(name: &str, surface: &Surface<f32>, options: &Options) ->
     }
     tasks.push(Task::new("lanes", name, 0, |run| lanes::measure_surface(surface, run)));
     if !claims.empty {
-        tasks.push(Task::new("white-furnace", name, 0, move |run| white::measure(surface, claims, run)));
+        let furnace = &furnace;
+        tasks.push(Task::new("white-furnace", name, 0, move |run| white::measure(surface, furnace, claims, run)));
     }
     let dials = anatomy::dials(surface);
     for (index, (dial, _)) in dials.iter().enumerate() {
@@ -173,7 +174,7 @@ pub fn certify_surface(name: &str, surface: &Surface<f32>, options: &Options) ->
     let checks = run(tasks, options);
     let ranges = ranges.into_inner().unwrap_or_else(|e| e.into_inner()).into_values().collect();
     let speeds = speed::of_surface(surface, &anatomy::converted(surface), &anatomy::converted(surface));
-    certificate(name, claims.properties, checks, ranges, white::of_surface(surface), speeds)
+    certificate(name, claims.properties, checks, ranges, furnace, speeds)
 }
 
 fn certificate(

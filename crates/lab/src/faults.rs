@@ -267,7 +267,8 @@ impl Probe for Spoilt {
 
 /// The row with the plant in both precisions.
 fn spoil(plant: &Plant, rows: &[Row]) -> Option<Subject<'static>> {
-    let mut subject = Subject::of_row(rows.iter().find(|row| row.name == plant.row)?);
+    let row = rows.iter().find(|row| row.name == plant.row)?;
+    let mut subject = Subject::of_surface(&row.name, &row.surface());
     let spoil =
         |base: Box<dyn Probe>| -> Box<dyn Probe> { Box::new(Spoilt { base, eval: plant.eval, sample: plant.sample }) };
     subject.single = subject.single.take().map(spoil);

@@ -68,15 +68,8 @@ pub(crate) fn f82(p: &[f64], wo: Dir, wi: Dir) -> Worth {
 /// Beckmann's distribution with Schlick's Fresnel: alpha_x, alpha_y, three f0. D in slopes (Walter et al. 2007, equation 25),
 /// Λ with the error function (Heitz 2014, equation 77); all visible normals as density.
 pub(crate) fn beckmann(p: &[f64], wo: Dir, wi: Dir) -> Worth {
-    let sum = [wo.x + wi.x, wo.y + wi.y, wo.z + wi.z];
-    let length = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();
-    let m = sum.map(|x| x / length);
-    let cos_om = wo.x * m[0] + wo.y * m[1] + wo.z * m[2];
-    let d = beckmann_d(p[0], p[1], m);
-    let (lambda_o, lambda_i) = (beckmann_lambda(p[0], p[1], wo), beckmann_lambda(p[0], p[1], wi));
-    let schlick = |c: usize| p[2 + c] + (1.0 - p[2 + c]) * (1.0 - cos_om).powi(5);
-    let f_cos = [0, 1, 2].map(|c| schlick(c) * d / (1.0 + lambda_o + lambda_i) / (4.0 * wo.z));
-    Worth { f_cos, pdf: d / (1.0 + lambda_o) / (4.0 * wo.z) }
+    let schlick = |cos: f64| ([0, 1, 2].map(|c| p[2 + c] + (1.0 - p[2 + c]) * (1.0 - cos).powi(5)), 1.0);
+    reflection(&|m| beckmann_d(p[0], p[1], m), &|w| beckmann_lambda(p[0], p[1], w), wo, wi, &schlick)
 }
 
 /// Λ of a Beckmann surface: Heitz 2014, equation 77.
@@ -140,7 +133,7 @@ pub(crate) fn ground_beckmann(p: &[f64], wo: Dir, wi: Dir) -> Worth {
     ground_of(p[2], &d, &lambda, wo, wi)
 }
 
-fn ground_of(eta: f64, distribution: &dyn Fn([f64; 3]) -> f64, lambda: &dyn Fn(Dir) -> f64, wo: Dir, wi: Dir) -> Worth {
+fn ground_of(eta: f64, distribution: Distribution, lambda: Lambda, wo: Dir, wi: Dir) -> Worth {
     let black = Worth { f_cos: [0.0; 3], pdf: 0.0 };
     let (mut wo, mut wi, mut eta) = (wo, wi, eta);
     if (eta - 1.0).abs() < 1e-3 {
@@ -150,15 +143,13 @@ fn ground_of(eta: f64, distribution: &dyn Fn([f64; 3]) -> f64, lambda: &dyn Fn(D
         (wo.z, wi.z, eta) = (-wo.z, -wi.z, 1.0 / eta);
     }
     let dot = |a: Dir, m: [f64; 3]| a.x * m[0] + a.y * m[1] + a.z * m[2];
-    let (lambda_o, lambda_i) = (lambda(wo), lambda(Dir::new(wi.x, wi.y, wi.z.abs())));
-    let g1_o = 1.0 / (1.0 + lambda_o);
     if wi.z > 0.0 {
-        let h = [wo.x + wi.x, wo.y + wi.y, wo.z + wi.z];
-        let length = (h[0] * h[0] + h[1] * h[1] + h[2] * h[2]).sqrt();
-        let m = h.map(|x| x / length);
-        let reflected = dielectric(dot(wo, m), eta) * distribution(m) / (4.0 * wo.z);
-        return Worth { f_cos: [reflected / (1.0 + lambda_o + lambda_i); 3], pdf: reflected * g1_o };
+        // Reflection is chosen in proportion to F.
+        let part = |cos| ([dielectric(cos, eta); 3], dielectric(cos, eta));
+        return reflection(distribution, lambda, wo, wi, &part);
     }
+    let (lambda_o, lambda_i) = (lambda(wo), lambda(Dir::new(wi.x, wi.y, -wi.z)));
+    let g1_o = 1.0 / (1.0 + lambda_o);
     // The normal of refraction, on wo's side.
     let h = [wo.x + eta * wi.x, wo.y + eta * wi.y, wo.z + eta * wi.z];
     let length = (h[0] * h[0] + h[1] * h[1] + h[2] * h[2]).sqrt();
@@ -236,9 +227,10 @@ fn cltc(wo: Dir, wi: Dir, r: f64) -> f64 {
     (w[2] / length).max(0.0) / (PI * kept) / (c * det_xz) / (length * length * length)
 }
 
-/// Cook–Torrance with GGX: f = F D G₂ / (4 cosθ_o cosθ_i), visible normals as density.
+/// Cook–Torrance with GGX.
 fn microfacet(alpha_x: f64, alpha_y: f64, wo: Dir, wi: Dir, fresnel: impl Fn(f64) -> [f64; 3]) -> Worth {
-    let worth = microfacet_visible(alpha_x, alpha_y, wo, wi, fresnel, |_| 1.0);
+    let part = |cos| (fresnel(cos), 1.0);
+    let worth = reflection(&|m| ggx_d(alpha_x, alpha_y, m), &|w| ggx_lambda(alpha_x, alpha_y, w), wo, wi, &part);
     // Reflectors sample normals above a bound (Eto & Tokuyoshi 2023, equations 5 and 6): D/(2(k cosθ + t)) where all
     // normals would give D/(2(cosθ + t)).
     let t = (wo.z * wo.z + (alpha_x * wo.x).powi(2) + (alpha_y * wo.y).powi(2)).sqrt();
@@ -248,26 +240,24 @@ fn microfacet(alpha_x: f64, alpha_y: f64, wo: Dir, wi: Dir, fresnel: impl Fn(f64
     Worth { pdf: worth.pdf * (wo.z + t) / (k * wo.z + t), ..worth }
 }
 
-/// The same with all visible normals, each with the given probability of being used.
-fn microfacet_visible(
-    alpha_x: f64,
-    alpha_y: f64,
-    wo: Dir,
-    wi: Dir,
-    fresnel: impl Fn(f64) -> [f64; 3],
-    used: impl Fn(f64) -> f64,
-) -> Worth {
+/// A density of normals.
+type Distribution<'a> = &'a dyn Fn([f64; 3]) -> f64;
+/// Smith's Λ.
+type Lambda<'a> = &'a dyn Fn(Dir) -> f64;
+
+/// Cook–Torrance: f = F D G₂ / (4 cosθ_o cosθ_i), all visible normals as density. `part` is F, and the probability with which
+/// a facet reflects.
+fn reflection(d: Distribution, lambda: Lambda, wo: Dir, wi: Dir, part: &dyn Fn(f64) -> ([f64; 3], f64)) -> Worth {
     let sum = [wo.x + wi.x, wo.y + wi.y, wo.z + wi.z];
     let length = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();
     let m = sum.map(|x| x / length);
     let cos_om = wo.x * m[0] + wo.y * m[1] + wo.z * m[2];
-    let d = ggx_d(alpha_x, alpha_y, m);
-    let (lambda_o, lambda_i) = (ggx_lambda(alpha_x, alpha_y, wo), ggx_lambda(alpha_x, alpha_y, wi));
-    let g2 = 1.0 / (1.0 + lambda_o + lambda_i);
-    let g1 = 1.0 / (1.0 + lambda_o);
+    let (lambda_o, lambda_i) = (lambda(wo), lambda(wi));
+    let (g1, g2) = (1.0 / (1.0 + lambda_o), 1.0 / (1.0 + lambda_o + lambda_i));
     // D_visible(m) = G₁ D (wo·m)/cosθ_o, and dω_m/dω_i = 1/(4 wo·m).
-    let pdf = used(cos_om) * g1 * d * cos_om / wo.z / (4.0 * cos_om);
-    Worth { f_cos: fresnel(cos_om).map(|f| f * d * g2 / (4.0 * wo.z * wi.z) * wi.z), pdf }
+    let (fresnel, reflects) = part(cos_om);
+    let pdf = reflects * g1 * d(m) * cos_om / wo.z / (4.0 * cos_om);
+    Worth { f_cos: fresnel.map(|f| f * d(m) * g2 / (4.0 * wo.z * wi.z) * wi.z), pdf }
 }
 
 /// D(m) = 1 / (π α_x α_y cos⁴θ (1 + tan²θ (cos²φ/α_x² + sin²φ/α_y²))²).

@@ -4,7 +4,7 @@
 //! residual of reciprocity over both angles in units of rounding (is it noise, or structure?), and the residuals of the χ²
 //! test, over its cells and as a histogram beside the normal distribution (is it noise, or structure?).
 
-use crate::anatomy::Rough;
+use crate::anatomy::{Rough, converted};
 use crate::chi2::observed_and_expected;
 use crate::finding::Run;
 use crate::probe::{Dir, Kind, Probe, SurfaceProbe};
@@ -111,7 +111,7 @@ pub fn of_surface(name: &str, surface: &Surface<f32>, options: &Options) -> Vec<
 
 /// All plots; a second or two.
 pub fn plots(options: &Options) -> Vec<Plot> {
-    let continuous = |s: &&Species| !s.nature.discrete;
+    let continuous = |s: &&Species| !s.is_discrete();
     let mut plots: Vec<Plot> = species().map(albedo).collect();
     plots.extend(species().filter(continuous).map(reciprocity));
     plots.extend(species().filter(continuous).flat_map(|s| residuals(s, options)));
@@ -145,11 +145,11 @@ fn white_albedo(name: &str, surface: &Surface<f32>) -> Plot {
 }
 
 fn albedo(species: &'static Species) -> Plot {
-    let Varied { name, range: (lo, hi), log, .. } = species.nature.varied;
+    let Varied { name, range: (lo, hi), log, .. } = species.varied;
     let y = Axis { name, lo, hi, log };
     let mut values = Vec::with_capacity(COLUMNS * ROWS);
     for line in 0..ROWS {
-        let probe = SurfaceProbe::new(species.specimen(y.at(line, ROWS) as f32).double(), None);
+        let probe = SurfaceProbe::<f64>::new(converted(&species.specimen(y.at(line, ROWS) as f32).surface()), None);
         values.extend((0..COLUMNS).map(|column| mean_weight(&probe, direction(COSINE_OUT.at(column, COLUMNS), 0.7))));
     }
     let parts = if species.has_width() { "; what is missing at large widths is light that scatters twice" } else { "" };
@@ -184,8 +184,8 @@ pub(crate) fn mean_weight(probe: &dyn Probe, wo: Dir) -> f64 {
 }
 
 fn reciprocity(species: &'static Species) -> Plot {
-    let Varied { name, single, .. } = species.nature.varied;
-    let probe = SurfaceProbe::new(species.specimen(single).single(), None);
+    let Varied { name, single, .. } = species.varied;
+    let probe = SurfaceProbe::new(species.specimen(single).surface(), None);
     reciprocity_of(species.name, &format!(", {name} = {single}"), &probe)
 }
 
@@ -223,9 +223,9 @@ fn reciprocity_of(lobe: &str, what: &str, probe: &dyn Probe) -> Plot {
 
 /// The residuals (observed − expected)/√expected of the second view's cells: over the cells, and how often they occur.
 fn residuals(species: &'static Species, options: &Options) -> [Plot; 2] {
-    let Varied { name, single, .. } = species.nature.varied;
+    let Varied { name, single, .. } = species.varied;
     let row = Row { name: species.name.to_owned(), ..species.specimen(single) };
-    residuals_of(&Subject::of_row(&row), &format!(", {name} = {single}"), options)
+    residuals_of(&Subject::of_surface(&row.name, &row.surface()), &format!(", {name} = {single}"), options)
 }
 
 fn residuals_of(subject: &Subject, what: &str, options: &Options) -> [Plot; 2] {
@@ -288,10 +288,12 @@ mod tests {
             let Some(Figure::Map(albedo)) = of("furnace").next().map(|p| &p.figure) else { panic!("{}", species.name) };
             // A coarse grid of random numbers, where a lobe of two parts is not smooth, is good to two per cent.
             assert!(albedo.values.iter().all(|a| (0.0..=1.02).contains(a)), "{}: {:?}", species.name, albedo.values);
+            let specimen = species.specimen(species.varied.single);
+            let symmetric = Subject::of_surface(species.name, &specimen.surface()).claims.symmetric;
             for plot in of("reciprocity") {
                 let Figure::Map(map) = &plot.figure else { panic!("{plot:?}") };
                 // Where the two ways take different roundings, the plot shows how much; only the symmetric are bounded by it.
-                assert!(!species.nature.symmetric || map.values.iter().all(|r| *r <= 16.0), "{}", species.name);
+                assert!(!symmetric || map.values.iter().all(|r| *r <= 16.0), "{}", species.name);
             }
             for plot in of("chi2") {
                 let Figure::Histogram(h) = &plot.figure else { continue };

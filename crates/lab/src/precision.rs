@@ -10,14 +10,14 @@ use crate::probe::{Dir, Probe, demote};
 use crate::subject::View;
 use gonio_kernel::Vec3;
 
-/// The errors of the four numbers of an `f32` view in units of max(eps f, s).
-pub(crate) fn errors(single: View, wo: Dir, wi: Dir) -> [f64; 4] {
+/// The four numbers in `f32` and in `f64`, and the errors in units of max(eps f, s).
+pub(crate) fn errors(single: View, wo: Dir, wi: Dir) -> [[f64; 4]; 3] {
     let (rough, exact) = (single.probe.eval(wo, wi).numbers(), single.reference.eval(wo, wi).numbers());
     let moves = sensitivity(single.reference, single.nudged, wo, wi);
     // Towards the end of f32's range rounding is absolute: exponentials have been flushed, and Schlick's fifth power is 1e-36
     // where a cosine rounds to 1 on one side alone.
     let unit = |i: usize| (f64::from(f32::EPSILON) * exact[i]).max(moves[i]).max(1e-30);
-    std::array::from_fn(|i| (rough[i] - exact[i]).abs() / unit(i))
+    [rough, exact, std::array::from_fn(|i| (rough[i] - exact[i]).abs() / unit(i))]
 }
 
 /// The largest error in units of max(eps f, s).
@@ -28,8 +28,8 @@ pub(crate) fn measure(single: View, run: &Run) -> Finding {
     let mut relative = 0.0_f64;
     for _ in 0..run.by_effort(3_000, 30_000, 300_000) {
         let Some((wo, wi)) = single.pair(&mut random) else { continue };
-        let (rough, exact) = (single.probe.eval(wo, wi).numbers(), single.reference.eval(wo, wi).numbers());
-        for (i, error) in errors(single, wo, wi).into_iter().enumerate() {
+        let [rough, exact, errors] = errors(single, wo, wi);
+        for (i, error) in errors.into_iter().enumerate() {
             if exact[i] > 1e-6 {
                 relative = relative.max((rough[i] - exact[i]).abs() / exact[i]);
             }

@@ -25,12 +25,13 @@ pub(crate) fn kernel(species: &Species, p: &[f64], wo: Dir, wi: Dir) -> Worth {
 /// One species at random parameters.
 pub(crate) fn measure(species: &Species, model: Model, run: &Run) -> Finding {
     let mut random = run.random();
+    let transmits = species.transmits();
     let mut finding = Finding::at_most(LIMIT, "max |kernel − oracle| / oracle ≤");
     for _ in 0..run.by_effort(30_000, 300_000, 3_000_000) {
         let p: Vec<f64> = species.parameters.iter().map(|p| f64::from(parameter(p, &mut random))).collect();
         let mut wo = any_above(&mut random);
         let mut wi = partner(&mut random, wo);
-        if species.nature.transmits {
+        if transmits {
             // Any sides; and refraction is narrow, so that what was sampled is asked for as often as not.
             let side = |w: Dir, bits: u64| if bits.is_multiple_of(2) { Dir::new(w.x, w.y, -w.z) } else { w };
             (wo, wi) = (side(wo, random.bits()), side(wi, random.bits()));

@@ -71,7 +71,7 @@ pub fn instruments() -> &'static [(&'static str, &'static str)] {
 /// Runs every instrument over the zoo and hands each check to `sink`, in an order that never depends on timing.
 pub fn validate_kernel(options: &Options, sink: &mut dyn FnMut(Check)) {
     let rows = rows();
-    let subjects: Vec<Subject> = rows.iter().map(Subject::of_row).collect();
+    let subjects: Vec<Subject> = rows.iter().map(|row| Subject::of_surface(&row.name, &row.surface())).collect();
     let warps = warps::subjects();
     let mut tasks = Vec::new();
     for subject in &subjects {

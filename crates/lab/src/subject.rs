@@ -6,7 +6,6 @@ use crate::directions::{VIEWS, any_above, partner};
 use crate::probe::{Dir, Kind, LobeProbe, Probe, SurfaceProbe, demote, promote};
 use crate::quadrature::Integral;
 use crate::random::{Random, direction, seed_for};
-use crate::zoo::Row;
 use gonio_kernel::{Lobe, Properties, Rgb, Surface, Vec3};
 use std::sync::OnceLock;
 
@@ -93,33 +92,6 @@ impl<'a> Subject<'a> {
         Self { name: name.to_owned(), single, double, nudged: Vec::new(), claims, prepared: Default::default() }
     }
 
-    /// A row of the zoo.
-    pub(crate) fn of_row(row: &Row) -> Self {
-        let claims = Claims {
-            properties: row.single().properties(),
-            albedo: row.albedo,
-            one_to_one: row.only().is_some_and(|(species, p)| (species.nature.one_to_one)(p)),
-            symmetric: row.lobes.iter().all(|(_, species, _)| species.nature.symmetric),
-            transmits: row.lobes.iter().any(|(_, species, _)| species.nature.transmits),
-            one_event: row.only().is_some_and(|(species, _)| species.nature.discrete && !species.nature.transmits),
-            discrete: row.is_discrete(),
-            slack: row.lobes.iter().map(|(weight, species, p)| f64::from(*weight) * (species.nature.slack)(p)).sum(),
-            width: Some(f64::from(row.least_width())),
-            empty: row.lobes.iter().all(|(weight, ..)| *weight == 0.0),
-        };
-        let probe = |row: &Row| SurfaceProbe::new(row.double(), None).with_weight_bounds(row.weight_bounds());
-        Self {
-            name: row.name.clone(),
-            single: (row.least_width() >= NARROWEST).then(|| -> Box<dyn Probe> {
-                Box::new(SurfaceProbe::new(row.single(), Some(row.lanes())).with_weight_bounds(row.weight_bounds()))
-            }),
-            double: Some(Box::new(probe(row))),
-            nudged: row.nudged().iter().map(|row| -> Box<dyn Probe> { Box::new(probe(row)) }).collect(),
-            claims,
-            prepared: Default::default(),
-        }
-    }
-
     /// A user's lobe in `f32`.
     pub(crate) fn of_lobe<L: Lobe<f32> + Sync>(name: &str, lobe: &'a L) -> Self {
         let claims = Claims { properties: lobe.properties(), ..Claims::LAWFUL };
@@ -141,7 +113,7 @@ impl<'a> Subject<'a> {
             _ => None,
         };
         let albedo = lobes.iter().try_fold([0.0; 3], |sum, (weight, lobe)| {
-            let Rgb { r, g, b } = anatomy::known_albedo(lobe)?.map(f64::from);
+            let Rgb { r, g, b } = anatomy::known_albedo(lobe)?;
             Some([sum[0] + weight * r, sum[1] + weight * g, sum[2] + weight * b])
         });
         let transmits = lobes.iter().any(|(_, lobe)| anatomy::transmits(lobe));
@@ -152,11 +124,11 @@ impl<'a> Subject<'a> {
             properties,
             albedo,
             one_to_one: only.is_some_and(anatomy::one_to_one),
-            symmetric: !transmits && properties.reciprocal,
+            symmetric: properties.reciprocal && lobes.iter().all(|(_, lobe)| anatomy::symmetric(lobe)),
             one_event: only.is_some() && discrete && !transmits,
             discrete,
             transmits,
-            slack: 0.0,
+            slack: lobes.iter().map(|(weight, lobe)| weight * anatomy::slack(lobe)).sum(),
             empty: lobes.iter().all(|(weight, _)| *weight == 0.0),
             width: Some(f64::from(width)),
         };

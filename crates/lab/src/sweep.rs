@@ -11,7 +11,7 @@ use crate::anatomy::{self, Dial, Rough};
 use crate::directions::show;
 use crate::finding::{Finding, Run};
 use crate::precision;
-use crate::probe::{Dir, Kind, Worth};
+use crate::probe::{Dir, Kind};
 use crate::subject::{NARROWEST, Subject, View};
 use crate::zoo::Parameter;
 use gonio_kernel::Surface;
@@ -147,7 +147,7 @@ fn wrong_at(surface: &Surface<f32>, index: usize, x: f32, single: bool, run: &Ru
 fn unsound(view: View, wo: Dir, wi: Dir, u: [f64; 3]) -> Option<String> {
     let value = view.probe.eval(wo, wi);
     if !value.is_sound() {
-        return Some(format!("{} at wo {}, wi {}", numbers(value), show(wo), show(wi)));
+        return Some(format!("{} at wo {}, wi {}", numbers(value.numbers()), show(wo), show(wi)));
     }
     let draw = view.probe.sample(wo, u);
     let length2 = draw.wi.length2();
@@ -156,7 +156,7 @@ fn unsound(view: View, wo: Dir, wi: Dir, u: [f64; 3]) -> Option<String> {
     }
     match draw.kind {
         Kind::Discrete(worth, _) if !worth.is_sound() => {
-            Some(format!("a discrete event of {} at wo {}", numbers(worth), show(wo)))
+            Some(format!("a discrete event of {} at wo {}", numbers(worth.numbers()), show(wo)))
         }
         _ => None,
     }
@@ -164,13 +164,12 @@ fn unsound(view: View, wo: Dir, wi: Dir, u: [f64; 3]) -> Option<String> {
 
 fn imprecise(view: View, wo: Dir, wi: Dir) -> Option<String> {
     let limit = f64::from(view.claims.properties.units);
-    let fine = precision::errors(view, wo, wi).into_iter().all(|error| error <= limit);
-    let (rough, exact) = (view.probe.eval(wo, wi), view.reference.eval(wo, wi));
+    let [rough, exact, errors] = precision::errors(view, wo, wi);
+    let fine = errors.into_iter().all(|error| error <= limit);
     (!fine).then(|| format!("f32 gives {}, f64 {} at wo {}, wi {}", numbers(rough), numbers(exact), show(wo), show(wi)))
 }
 
 /// f_cos and pdf.
-fn numbers(worth: Worth) -> String {
-    let [r, g, b, pdf] = worth.numbers();
+fn numbers([r, g, b, pdf]: [f64; 4]) -> String {
     format!("f_cos ({r:.3e}, {g:.3e}, {b:.3e}), pdf {pdf:.3e}")
 }

@@ -68,7 +68,7 @@ const TINY: [f32; 12] =
 
 /// How many lanes returned something that is not finite or negative, over one species, inside the domain.
 pub(crate) fn measure_inside(species: &Species, build: Build<F32x8>, run: &Run) -> Finding {
-    let parameters = species.parameters;
+    let (parameters, transmits, index) = (species.parameters, species.transmits(), species.index());
     let mut random = run.random();
     let mut finding = Finding::at_most(0.0, "unsound results without a guard, inside the domain ≤");
     let mut unsound = 0_usize;
@@ -81,8 +81,7 @@ pub(crate) fn measure_inside(species: &Species, build: Build<F32x8>, run: &Run) 
             for (p, range) in p.iter_mut().zip(parameters) {
                 p[l] = parameter(range, &mut random);
             }
-            let eta = species.nature.index.map(|index| p[index][l]);
-            (wo[l], wi[l]) = pair(species.nature.transmits, eta, &mut random);
+            (wo[l], wi[l]) = pair(transmits, index.map(|index| p[index][l]), &mut random);
         }
         let numbers: Vec<F32x8> = p.iter().copied().map(F32x8::new).collect();
         let surface = Surface::of(build(&numbers));
@@ -162,7 +161,7 @@ fn pair(transmits: bool, eta: Option<f32>, random: &mut Random) -> (Vec3<f32>, V
 
 /// Broken promises of the guarded closure over special numbers.
 pub(crate) fn measure_special(species: &Species, build: Build<f32>, run: &Run) -> Finding {
-    let parameters = species.parameters;
+    let (parameters, transmits) = (species.parameters, species.transmits());
     let mut random = run.random();
     let mut finding = Finding::at_most(0.0, "results of the closure that break its promise ≤");
     let mut broken = 0_usize;
@@ -171,7 +170,7 @@ pub(crate) fn measure_special(species: &Species, build: Build<f32>, run: &Run) -
     let places = count + 6 + 3;
     let rounds = run.by_effort(50_000, 500_000, 2_500_000);
     for round in 0..rounds {
-        let (wo, wi) = pair(species.nature.transmits, None, &mut random);
+        let (wo, wi) = pair(transmits, None, &mut random);
         let mut x: Vec<f32> = parameters.iter().map(|p| parameter(p, &mut random)).collect();
         x.extend(<[f32; 3]>::from(wo).into_iter().chain(<[f32; 3]>::from(wi)));
         x.extend([(); 3].map(|()| random.coarse() as f32));

@@ -90,9 +90,8 @@ pub(crate) fn white(surface: &Surface<f32>, roughness: Option<f64>) -> Surface<f
     })
 }
 
-/// The largest albedo of the map, integrated.
-pub(crate) fn measure(surface: &Surface<f32>, claims: Claims, run: &Run) -> Finding {
-    let map = of_surface(surface);
+/// The largest albedo of the surface's map, integrated.
+pub(crate) fn measure(surface: &Surface<f32>, map: &FurnaceMap, claims: Claims, run: &Run) -> Finding {
     let properties = claims.properties;
     let mut finding = match properties.conserving {
         true => Finding::at_most(1.0, "white: excess over 1 in units of quadrature error and what the model admits ≤"),

@@ -4,11 +4,12 @@
 //! lanes. A [`Row`] is a weighted list of species at given numbers. The table of species is made from the kernel's own
 //! table of lobes: a lobe that has none here does not compile.
 
+use crate::anatomy;
 use crate::oracle;
 use crate::probe::{Dir, Worth};
 use gonio_kernel::energy::Compensation;
 use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::eon::{self, Directional};
+use gonio_kernel::lobe::eon::Directional;
 use gonio_kernel::lobe::{AnyLobe, Conductor, Dielectric, Eon, Lambert, Mirror, Phong, PhongNorm, RoughDielectric};
 use gonio_kernel::microfacet::{Beckmann, Ggx, Masking};
 use gonio_kernel::{F32x8, Real, Rgb, Surface};
@@ -37,27 +38,6 @@ pub(crate) const EXTINCTION: Parameter = Parameter { lo: 0.0, hi: 100.0, log_fro
 /// A relative index of refraction.
 pub(crate) const INDEX: Parameter = Parameter { lo: 0.01, hi: 100.0, log_from: Some(0.01) };
 
-/// What is claimed of a lobe at all its parameters, beyond the laws that hold for all.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Nature {
-    /// Purely discrete.
-    pub(crate) discrete: bool,
-    /// Scatters to the other side as well, and from there.
-    pub(crate) transmits: bool,
-    /// Whether, at these numbers, the sampler maps the unit square to directions one to one: then pdf · |∂ω/∂u| = 1.
-    pub(crate) one_to_one: fn(&[f32]) -> bool,
-    /// Exchanging the directions exchanges the operands of commutative operations only: see the reciprocity instrument.
-    pub(crate) symmetric: bool,
-    /// Which number is a relative index of refraction.
-    pub(crate) index: Option<usize>,
-    /// The largest weight of a sample at these numbers.
-    pub(crate) weight: fn(&[f32]) -> f64,
-    /// How far the albedo may lie above 1, or from its known value, by the model's own admission.
-    pub(crate) slack: fn(&[f32]) -> f64,
-    /// What its plots vary.
-    pub(crate) varied: Varied,
-}
-
 /// Numbers of a species that plots set alike, and over which range.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Varied {
@@ -80,26 +60,6 @@ impl Varied {
     const INDEX: Self = Self { name: "index η", numbers: (0, 1), range: (0.4, 2.5), log: true, single: 1.5 };
 }
 
-impl Nature {
-    /// A continuous reflector whose sampler is one to one and whose weights are at most 1.
-    const REFLECTOR: Self = Self {
-        discrete: false,
-        transmits: false,
-        one_to_one: |_| true,
-        symmetric: true,
-        index: None,
-        weight: |_| 1.0,
-        slack: |_| 0.0,
-        varied: Varied::WIDTH,
-    };
-    /// The same without microfacets.
-    const MATTE: Self = Self { varied: Varied::REFLECTANCE, ..Self::REFLECTOR };
-    /// Two parts, each with its own sampler; largest weights by [`phong_weight`].
-    const PHONG: Self = Self { one_to_one: one_part, varied: Varied::EXPONENT, ..Self::REFLECTOR };
-    /// The same as a discrete event.
-    const DISCRETE: Self = Self { discrete: true, one_to_one: |_| false, ..Self::MATTE };
-}
-
 /// A lobe as a function of plain numbers.
 #[derive(Debug)]
 pub(crate) struct Species {
@@ -115,11 +75,27 @@ pub(crate) struct Species {
     pub(crate) lanes: fn(&[F32x8]) -> AnyLobe<F32x8>,
     /// The textbook's answer: parameters, wo, wi to f_cos and pdf.
     pub(crate) oracle: fn(&[f64], Dir, Dir) -> Worth,
-    /// What is claimed of it.
-    pub(crate) nature: Nature,
+    /// What its plots vary.
+    pub(crate) varied: Varied,
 }
 
 impl Species {
+    /// It at the least of its numbers.
+    fn least(&self) -> AnyLobe<f32> {
+        (self.single)(&self.parameters.iter().map(|p| p.lo).collect::<Vec<_>>())
+    }
+    /// Whether it is purely discrete.
+    pub(crate) fn is_discrete(&self) -> bool {
+        anatomy::is_discrete(&self.least())
+    }
+    /// Whether it scatters to the other side, and from there.
+    pub(crate) fn transmits(&self) -> bool {
+        anatomy::transmits(&self.least())
+    }
+    /// Which of its numbers is the relative index of what it transmits.
+    pub(crate) fn index(&self) -> Option<usize> {
+        self.parameters.iter().position(|p| p.lo == INDEX.lo).filter(|_| self.transmits())
+    }
     /// Whether its first two numbers are widths.
     pub(crate) fn has_width(&self) -> bool {
         self.parameters[0].log_from == ALPHA.log_from
@@ -130,7 +106,7 @@ impl Species {
         let (_, numbers) =
             rows.iter().filter_map(Row::only).find(|(s, _)| std::ptr::eq(*s, self)).expect("every species has a row");
         let mut numbers = numbers.to_vec();
-        let (from, to) = self.nature.varied.numbers;
+        let (from, to) = self.varied.numbers;
         numbers[from..to].fill(number);
         row(self.name, &[(1.0, self, &numbers)])
     }
@@ -138,9 +114,9 @@ impl Species {
 
 macro_rules! species {
     ($name:ident, $text:literal, $build:ident, $oracle:path, [$($parameter:expr),*]) => {
-        species!($name, $text, $build, $oracle, [$($parameter),*], Nature::REFLECTOR);
+        species!($name, $text, $build, $oracle, [$($parameter),*], Varied::WIDTH);
     };
-    ($name:ident, $text:literal, $build:ident, $oracle:path, [$($parameter:expr),*], $nature:expr) => {
+    ($name:ident, $text:literal, $build:ident, $oracle:path, [$($parameter:expr),*], $varied:expr) => {
         /// See the builder of the same name.
         pub(crate) static $name: Species = Species {
             name: $text,
@@ -149,70 +125,32 @@ macro_rules! species {
             double: $build,
             lanes: $build,
             oracle: $oracle,
-            nature: $nature,
+            varied: $varied,
         };
     };
 }
-species!(LAMBERT, "lambert", lambert, oracle::lambert, [UNIT, UNIT, UNIT], Nature::MATTE);
-species!(MIRROR, "mirror", mirror, oracle::discrete, [UNIT, UNIT, UNIT], Nature::DISCRETE);
-// Sampled by a mixture of two densities. The closed form of the albedo holds for unit directions, and those of the instruments
-// are unit to half an ulp of f32.
-const EON: Nature = Nature { one_to_one: |_| false, weight: |_| eon::LARGEST_WEIGHT, slack: |_| 1e-7, ..Nature::MATTE };
-species!(EON_EXACT, "eon-exact", eon_exact, oracle::eon_exact, [UNIT, UNIT, UNIT, UNIT], EON);
-species!(EON_FITTED, "eon-fitted", eon_fitted, oracle::eon_fitted, [UNIT, UNIT, UNIT, UNIT], EON);
+species!(LAMBERT, "lambert", lambert, oracle::lambert, [UNIT, UNIT, UNIT], Varied::REFLECTANCE);
+species!(MIRROR, "mirror", mirror, oracle::discrete, [UNIT, UNIT, UNIT], Varied::REFLECTANCE);
+species!(EON_EXACT, "eon-exact", eon_exact, oracle::eon_exact, [UNIT, UNIT, UNIT, UNIT], Varied::REFLECTANCE);
+species!(EON_FITTED, "eon-fitted", eon_fitted, oracle::eon_fitted, [UNIT, UNIT, UNIT, UNIT], Varied::REFLECTANCE);
 species!(METAL, "conductor", metal, oracle::metal, [ALPHA, ALPHA, ETA, ETA, ETA, EXTINCTION, EXTINCTION, EXTINCTION]);
 species!(SCHLICK, "conductor-schlick", schlick, oracle::schlick, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
 species!(F82, "conductor-f82", f82, oracle::f82, [ALPHA, ALPHA, UNIT, UNIT, UNIT, UNIT, UNIT, UNIT]);
 species!(SEPARABLE, "conductor-separable", separable, oracle::separable, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
 species!(BECKMANN, "conductor-beckmann", beckmann, oracle::beckmann, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
-species!(
-    KULLA_CONTY,
-    "conductor-kulla-conty",
-    kulla_conty,
-    oracle::kulla_conty,
-    [ALPHA, ALPHA, UNIT, UNIT, UNIT],
-    Nature { one_to_one: |_| false, weight: |_| 4.0, ..Nature::REFLECTOR }
-);
-species!(
-    TURQUIN,
-    "conductor-turquin",
-    turquin,
-    oracle::turquin,
-    [ALPHA, ALPHA, UNIT, UNIT, UNIT],
-    Nature { weight: |_| 3.3, symmetric: false, ..Nature::REFLECTOR }
-);
+species!(KULLA_CONTY, "conductor-kulla-conty", kulla_conty, oracle::kulla_conty, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
+species!(TURQUIN, "conductor-turquin", turquin, oracle::turquin, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
 species!(COAT, "dielectric-reflection", coat, oracle::coat, [ALPHA, ALPHA, INDEX]);
-species!(
-    GLASS,
-    "dielectric",
-    glass,
-    oracle::discrete,
-    [INDEX],
-    Nature { transmits: true, index: Some(0), varied: Varied::INDEX, ..Nature::DISCRETE }
-);
-species!(
-    GROUND_BECKMANN,
-    "rough-dielectric-beckmann",
-    ground_beckmann,
-    oracle::ground_beckmann,
-    [ALPHA, ALPHA, INDEX],
-    Nature { transmits: true, one_to_one: |_| false, symmetric: false, index: Some(2), ..Nature::REFLECTOR }
-);
-species!(
-    GROUND,
-    "rough-dielectric",
-    ground,
-    oracle::ground,
-    [ALPHA, ALPHA, INDEX],
-    Nature { transmits: true, one_to_one: |_| false, symmetric: false, index: Some(2), ..Nature::REFLECTOR }
-);
+species!(GLASS, "dielectric", glass, oracle::discrete, [INDEX], Varied::INDEX);
+species!(GROUND_BECKMANN, "rough-dielectric-beckmann", ground_beckmann, oracle::ground_beckmann, [ALPHA, ALPHA, INDEX]);
+species!(GROUND, "rough-dielectric", ground, oracle::ground, [ALPHA, ALPHA, INDEX]);
 species!(
     PHONG_LECTURE,
     "phong-lecture",
     phong_lecture,
     oracle::phong_lecture,
     [UNIT, UNIT, UNIT, EXPONENT],
-    Nature { weight: |p| phong_weight(p, 1.0), ..Nature::PHONG }
+    Varied::EXPONENT
 );
 species!(
     PHONG_LAFORTUNE,
@@ -220,7 +158,7 @@ species!(
     phong_lafortune,
     oracle::phong_lafortune,
     [UNIT, UNIT, UNIT, EXPONENT],
-    Nature { weight: |p| phong_weight(p, (f64::from(p[3]) + 2.0) / (f64::from(p[3]) + 1.0)), ..Nature::PHONG }
+    Varied::EXPONENT
 );
 
 fn rgb<R: Real>(p: &[R]) -> Rgb<R> {
@@ -284,16 +222,6 @@ fn phong_lecture<R: Real>(p: &[R]) -> AnyLobe<R> {
 fn phong_lafortune<R: Real>(p: &[R]) -> AnyLobe<R> {
     phong(p, PhongNorm::Lafortune).into()
 }
-/// max(k_d/p_d, k_s/p_s · excess) over channels.
-fn phong_weight(p: &[f32], excess: f64) -> f64 {
-    let phong = phong(&[p[0], p[1], p[2], p[3]].map(f64::from), PhongNorm::Lecture);
-    let part = |k: Rgb<f64>| if k.luminance() > 0.0 { k.largest() / k.luminance() } else { 0.0 };
-    // Their luminances add up to 1, and so do the probabilities.
-    part(phong.diffuse).max(part(phong.glossy) * excess)
-}
-fn one_part(p: &[f32]) -> bool {
-    p[..3] == [0.0; 3] || p[..3] == [1.0; 3]
-}
 fn eon_exact<R: Real>(p: &[R]) -> AnyLobe<R> {
     Eon::new(rgb(p), p[3]).into()
 }
@@ -349,53 +277,12 @@ pub(crate) struct Row {
     pub(crate) name: String,
     /// Weight, species, numbers.
     pub(crate) lobes: Vec<(f32, &'static Species, Vec<f32>)>,
-    /// The directional albedo, where it is known exactly.
-    pub(crate) albedo: Option<[f64; 3]>,
 }
 
 impl Row {
-    /// The surface in `f32`.
-    pub(crate) fn single(&self) -> Surface<f32> {
+    /// The surface.
+    pub(crate) fn surface(&self) -> Surface<f32> {
         self.lobes.iter().fold(Surface::black(), |s, (w, species, p)| s.with(*w, (species.single)(p)))
-    }
-    /// The surface in `f64`, of exactly the same numbers.
-    pub(crate) fn double(&self) -> Surface<f64> {
-        self.lobes.iter().fold(Surface::black(), |s, (w, species, p)| {
-            let p: Vec<f64> = p.iter().copied().map(f64::from).collect();
-            s.with(f64::from(*w), (species.double)(&p))
-        })
-    }
-    /// The largest weight of each lobe.
-    pub(crate) fn weight_bounds(&self) -> Vec<f64> {
-        self.lobes.iter().map(|(_, species, p)| (species.nature.weight)(p)).collect()
-    }
-    /// The surface in lanes, all alike.
-    pub(crate) fn lanes(&self) -> Surface<F32x8> {
-        self.lobes.iter().fold(Surface::black(), |s, (w, species, p)| {
-            let p: Vec<F32x8> = p.iter().copied().map(F32x8::splat).collect();
-            s.with(F32x8::splat(*w), (species.lanes)(&p))
-        })
-    }
-    /// The row with each number in turn moved to the next `f32`, up and down, where that stays in its domain.
-    pub(crate) fn nudged(&self) -> Vec<Row> {
-        let mut rows = Vec::new();
-        for (slot, (_, species, numbers)) in self.lobes.iter().enumerate() {
-            for (at, (&x, range)) in numbers.iter().zip(species.parameters).enumerate() {
-                for moved in [x.next_up(), x.next_down()] {
-                    if range.lo <= moved && moved <= range.hi {
-                        let mut row = self.clone();
-                        row.lobes[slot].2[at] = moved;
-                        rows.push(row);
-                    }
-                }
-            }
-        }
-        rows
-    }
-    /// The least width of its microfacets; 1 if there are none.
-    pub(crate) fn least_width(&self) -> f32 {
-        let widths = self.lobes.iter().filter(|(_, s, _)| s.has_width()).flat_map(|(.., p)| &p[..2]);
-        widths.fold(1.0, |least, &width| width.min(least))
     }
     /// The numbers behind a single lobe of weight 1.
     pub(crate) fn only(&self) -> Option<(&'static Species, &[f32])> {
@@ -403,10 +290,6 @@ impl Row {
             [(weight, species, p)] if *weight == 1.0 => Some((species, p)),
             _ => None,
         }
-    }
-    /// Whether all lobes are purely discrete.
-    pub(crate) fn is_discrete(&self) -> bool {
-        self.lobes.iter().all(|(_, species, _)| species.nature.discrete)
     }
 }
 
@@ -416,28 +299,10 @@ const SILVER: [f32; 6] = [0.155, 0.117, 0.138, 4.828, 3.122, 2.147];
 const WHITE: [f32; 3] = [1.0; 3];
 const COLOUR: [f32; 3] = [0.8, 0.5, 0.2];
 
-/// Species that return their first three numbers at every angle.
-const RETURNS_RHO: [&str; 2] = ["lambert", "mirror"];
-
-/// What a species returns at every angle, where that is known: Lambert, mirror, exact EON that is white or smooth, a white
-/// isotropic metal whose multiple scattering is given back.
-fn known_albedo(species: &Species, p: &[f32]) -> Option<[f64; 3]> {
-    match species.name {
-        name if RETURNS_RHO.contains(&name) => Some([0, 1, 2].map(|c| f64::from(p[c]))),
-        "eon-exact" if p[3] == 0.0 || p[..3] == WHITE => Some([0, 1, 2].map(|c| f64::from(p[c]))),
-        "conductor-kulla-conty" if p[0] == p[1] && p[2..] == WHITE => Some([1.0; 3]),
-        _ => None,
-    }
-}
-
 /// A row; weight, species and numbers of each lobe.
 pub(crate) fn row(name: impl Into<String>, lobes: &[(f32, &'static Species, &[f32])]) -> Row {
     let lobes: Vec<_> = lobes.iter().map(|(w, s, p)| (*w, *s, p.to_vec())).collect();
-    let each: Option<Vec<[f64; 3]>> = lobes.iter().map(|(_, s, p)| known_albedo(s, p)).collect();
-    let albedo = each.map(|each| {
-        std::array::from_fn(|c| lobes.iter().zip(&each).map(|((weight, ..), rho)| f64::from(*weight) * rho[c]).sum())
-    });
-    Row { name: name.into(), lobes, albedo }
+    Row { name: name.into(), lobes }
 }
 
 /// Every row.
