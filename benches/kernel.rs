@@ -14,7 +14,7 @@ mod serve;
 use criterion::{Criterion, Throughput};
 use gonio_kernel::fresnel::Fresnel;
 use gonio_kernel::lobe::{Conductor, Dielectric, Eon, Lambert, Mirror, Phong, PhongNorm, RoughDielectric};
-use gonio_kernel::microfacet::{Beckmann, Ggx};
+use gonio_kernel::microfacet::{Beckmann, Ggx, Reach};
 use gonio_kernel::{F32x8, Lobe, Real, Rgb, Sample, Value, Vec3, for_each_lobe};
 use std::hint::black_box;
 use std::process::ExitCode;
@@ -114,7 +114,8 @@ fn visible_normal_rows(criterion: &mut Criterion) {
     }
     fn ggx_normal<R: Real>(wo: Vec3<R>, u: [R; 2]) -> Vec3<R> {
         let ggx = Ggx { alpha_x: R::lit(0.3), alpha_y: R::lit(0.2) };
-        ggx.sample_visible(wo, ggx.smith_length(wo), R::ONE, u)
+        let s_o = ggx.smith_length(wo);
+        ggx.sample_visible(wo, s_o, Reach::whole(wo, s_o), u)
     }
     let (one, eight) = (Scalars::new(), Lanes::new());
     let mut group = criterion.benchmark_group("visible normal");

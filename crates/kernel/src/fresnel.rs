@@ -59,55 +59,73 @@ pub fn dielectric<R: Real>(cos_o: R, eta: R) -> R {
 /// R⊥ = ((a − cosθ)² + b²)/((a + cosθ)² + b²), R∥ = R⊥ · ((a cosθ − sin²θ)² + b²cos²θ)/((a cosθ + sin²θ)² + b²cos²θ).
 #[inline(always)]
 pub fn conductor<R: Real>(cos_o: R, eta: R, k: R) -> R {
-    let (n, d) = conductor_fraction(cos_o, eta, k);
-    (n / d).max(R::ZERO).min(R::ONE)
+    let (n, d) = ConductorAngle::new(cos_o, cos_o * cos_o).fraction(eta, k);
+    (n / d).min(R::ONE)
 }
 
-/// [`conductor`] of three channels, with one division for all.
+/// [`conductor`] of three channels, with one division for all; cos²θ is given too, since callers know it before its root.
 #[inline(always)]
-pub fn conductor_rgb<R: Real>(cos_o: R, eta: Rgb<R>, k: Rgb<R>) -> Rgb<R> {
-    let (r, g, b) = (
-        conductor_fraction(cos_o, eta.r, k.r),
-        conductor_fraction(cos_o, eta.g, k.g),
-        conductor_fraction(cos_o, eta.b, k.b),
-    );
-    let (rg, gb, rb) = (r.1 * g.1, g.1 * b.1, r.1 * b.1);
+pub(crate) fn conductor_rgb<R: Real>(cos_o: R, cos2_o: R, eta: Rgb<R>, k: Rgb<R>) -> Rgb<R> {
+    let angle = ConductorAngle::new(cos_o, cos2_o);
+    let (r, g, b) = (angle.fraction(eta.r, k.r), angle.fraction(eta.g, k.g), angle.fraction(eta.b, k.b));
+    let rg = r.1 * g.1;
     let product = rg * b.1;
     let inverse = product.recip();
-    let mut reflectance = Rgb::new(r.0 * gb * inverse, g.0 * rb * inverse, b.0 * rg * inverse);
-    // Denominators span up to 60 decades near matched indices at grazing: where their product leaves `f32`, one by one.
-    let ordinary = product.gt(R::lit(1e-30)) & product.lt(R::lit(1e38)) & rg.gt(R::lit(1e-30)) & gb.gt(R::lit(1e-30));
-    let ordinary = ordinary & rb.gt(R::lit(1e-30));
+    let (over_rg, over_b) = (b.1 * inverse, rg * inverse);
+    let mut reflectance = Rgb::new(r.0 * (g.1 * over_rg), g.0 * (r.1 * over_rg), b.0 * over_b);
+    // Denominators span up to 60 decades near matched indices at grazing: where their product leaves `f32`, one by one. Each is
+    // below 10¹⁴, so a product of three above 10⁻¹⁸ has no factor that is lost.
+    let ordinary = product.gt(R::lit(1e-18)) & product.lt(R::lit(1e38));
     if !ordinary.all() {
         reflectance = Rgb::select(ordinary, reflectance, Rgb::new(r.0 / r.1, g.0 / g.1, b.0 / b.1));
     }
-    reflectance.map(|x| x.max(R::ZERO).min(R::ONE))
+    reflectance.map(|x| x.min(R::ONE))
 }
 
-/// Numerator and denominator of [`conductor`], the latter below 10¹³ for η and k up to 100.
-///
-/// With s² = (|a² + b²| + |t|)/2 and t = a² − b² = η² − k² − sin²θ, as = s² and bs = ηk where t ≥ 0, the other way round
-/// elsewhere: neither a nor b is formed by subtraction, and multiplied by s no division is left.
-/// (R⊥ + R∥)/2 = ((as − s cosθ)² + (bs)²) q / ((sp + 2as cosθ)(sq + 2as cosθ sin²θ)) with p = a² + b² + cos²θ and
-/// q = (a² + b²)cos²θ + sin⁴θ. Only as − s cosθ cancels, for η near 1 and small k, where nothing else could say how much
-/// is reflected.
-#[inline(always)]
-fn conductor_fraction<R: Real>(cos_o: R, eta: R, k: R) -> (R, R) {
-    let cos2 = cos_o * cos_o;
-    let sin2 = (R::ONE - cos_o) * (R::ONE + cos_o);
-    let eta_k = eta * k;
-    let t = (eta - k).mul_add(eta + k, -sin2);
-    let a2b2 = t.mul_add(t, R::lit(4.0) * eta_k * eta_k).sqrt();
-    // At the critical angle of a lossless index s is 0, and so would be both parts of the fraction.
-    let s2 = ((a2b2 + t.abs()) * R::lit(0.5)).max(R::lit(1e-16));
-    let s = s2.sqrt();
-    let inside = t.lt(R::ZERO);
-    let (a_s, b_s) = (R::select(inside, eta_k, s2), R::select(inside, s2, eta_k));
-    let difference = (-s).mul_add(cos_o, a_s);
-    let twice = R::lit(2.0) * a_s * cos_o;
-    let q = cos2.mul_add(a2b2, sin2 * sin2);
-    let numerator = difference.mul_add(difference, b_s * b_s) * q;
-    (numerator, s.mul_add(a2b2 + cos2, twice) * twice.mul_add(sin2, s * q))
+/// What [`conductor`] needs of the angle, for all channels.
+#[derive(Clone, Copy)]
+struct ConductorAngle<R> {
+    cos2: R,
+    sin2: R,
+    sin4: R,
+    /// √2 cosθ.
+    scaled_cos: R,
+}
+
+impl<R: Real> ConductorAngle<R> {
+    #[inline(always)]
+    fn new(cos: R, cos2: R) -> Self {
+        let sin2 = R::ONE - cos2;
+        Self { cos2, sin2, sin4: sin2 * sin2, scaled_cos: cos * R::lit(core::f64::consts::SQRT_2) }
+    }
+
+    /// Numerator and denominator of [`conductor`], the latter below 10¹⁴ for η and k up to 100.
+    ///
+    /// With s² = (|a² + b²| + |t|)/2 and t = a² − b² = η² − k² − sin²θ, as = s² and bs = ηk where t ≥ 0, the other way round
+    /// elsewhere: neither a nor b is formed by subtraction, and multiplied by s no division is left.
+    /// (R⊥ + R∥)/2 = ((as − s cosθ)² + (bs)²) q / ((sp + 2as cosθ)(sq + 2as cosθ sin²θ)) with p = a² + b² + cos²θ and
+    /// q = (a² + b²)cos²θ + sin⁴θ; here with √2 s and all of it times 4. Only as − s cosθ cancels, for η near 1 and small k,
+    /// where nothing else could say how much is reflected.
+    #[inline(always)]
+    fn fraction(self, eta: R, k: R) -> (R, R) {
+        // Of the material alone; with cos²θ, t does not cancel for η near 1. At the critical angle of a lossless index s is 0,
+        // and so would be both parts of the fraction.
+        let constant = (-k).mul_add(k, (eta - R::ONE) * (eta + R::ONE));
+        let ab = R::lit(2.0) * eta * k;
+        let ab2 = (ab * ab).max(R::lit(1e-32));
+
+        let t = constant + self.cos2;
+        let a2b2 = t.mul_add(t, ab2).sqrt();
+        let s2 = a2b2 + t.abs();
+        let s = s2.sqrt();
+        let inside = t.lt(R::ZERO);
+        let (a_s, b_s) = (R::select(inside, ab, s2), R::select(inside, s2, ab));
+        let difference = (-s).mul_add(self.scaled_cos, a_s);
+        let twice = a_s * self.scaled_cos;
+        let q = self.cos2.mul_add(a2b2, self.sin4);
+        let numerator = difference.mul_add(difference, b_s * b_s) * (R::lit(0.5) * q);
+        (numerator, s.mul_add(a2b2 + self.cos2, twice) * s.mul_add(q, twice * self.sin2))
+    }
 }
 
 /// Schlick's approximation: f0 + (1 − f0)(1 − cosθ)⁵. Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering".
@@ -169,8 +187,14 @@ impl<R: Real> Fresnel<R> {
     /// The reflectance of each channel at cos_o in [0, 1].
     #[inline(always)]
     pub fn reflectance(&self, cos_o: R) -> Rgb<R> {
+        self.reflectance_of_squared(cos_o, cos_o * cos_o)
+    }
+
+    /// [`Fresnel::reflectance`] where the square of the cosine is known too.
+    #[inline(always)]
+    pub(crate) fn reflectance_of_squared(&self, cos_o: R, cos2_o: R) -> Rgb<R> {
         match *self {
-            Self::Conductor { eta, k } => conductor_rgb(cos_o, eta, k),
+            Self::Conductor { eta, k } => conductor_rgb(cos_o, cos2_o, eta, k),
             Self::Schlick { f0 } => f0.map(|f0| schlick(cos_o, f0)),
             Self::F82 { f0, tint } => {
                 Rgb::new(f82(cos_o, f0.r, tint.r), f82(cos_o, f0.g, tint.g), f82(cos_o, f0.b, tint.b))
@@ -299,7 +323,7 @@ mod tests {
     fn three_channels_at_once_are_three_channels_one_by_one() {
         let (eta, k) = (Rgb::new(0.2_f32, 1e-4, 100.0), Rgb::new(3.9, 0.0, 100.0));
         for cos in [0.0_f32, 1e-30, 1e-8, 1e-4, 0.1, 0.5, 0.999, 1.0] {
-            let (all, each) = (conductor_rgb(cos, eta, k), |eta, k| f64::from(conductor(cos, eta, k)));
+            let (all, each) = (conductor_rgb(cos, cos * cos, eta, k), |eta, k| f64::from(conductor(cos, eta, k)));
             let one_by_one = [each(eta.r, k.r), each(eta.g, k.g), each(eta.b, k.b)];
             for (a, b) in [all.r, all.g, all.b].into_iter().zip(one_by_one) {
                 assert!(close(a.into(), b, 1e-6), "cos {cos}: {all:?} and {one_by_one:?}");

@@ -170,7 +170,7 @@ macro_rules! lanewise {
 }
 lanewise!(F32x8: Add add, Sub sub, Mul mul, Div div);
 lanewise!(U32x8: Add add, Mul mul, BitXor bitxor, BitAnd bitand, BitOr bitor);
-lanewise!(Mask8: BitAnd bitand, BitOr bitor);
+lanewise!(Mask8: BitAnd bitand, BitOr bitor, BitXor bitxor);
 
 impl Shr<u32> for U32x8 {
     type Output = Self;
@@ -264,6 +264,11 @@ impl Real for F32x8 {
         let bit = U32x8::splat(0x8000_0000);
         let rest = U32x8::splat(0x7fff_ffff);
         ((self.to_bits() & rest) | (sign.to_bits() & bit)).as_real()
+    }
+    #[inline(always)]
+    fn negated(self, mask: Mask8) -> Self {
+        // Only the sign bit of a mask of ones is left to turn.
+        (self.to_bits() ^ (U32x8(bytemuck::cast(mask.0)) & U32x8::splat(0x8000_0000))).as_real()
     }
     #[inline(always)]
     fn lt(self, b: Self) -> Mask8 {

@@ -10,8 +10,10 @@ mod log;
 mod values;
 
 pub use erf::{erf, erf_inv};
-pub(crate) use erf::{erf_and_exp, scaled_erfc};
+pub(crate) use erf::{erf_inv_over, erf_inv_within, erfc_and_exp};
+pub(crate) use exp::exp_negative;
 pub use exp::{exp, exp_m1, flushed_square};
+pub(crate) use log::ln_normal;
 pub use log::{ln, ln_1p, pow};
 
 use crate::real::{Precision, Real};
@@ -29,7 +31,7 @@ pub fn sin_cos_turns<R: Real>(u: R) -> (R, R) {
     let odd = R::int_bit(quadrant, 0);
     let half = R::int_bit(quadrant, 1);
     let (s, c) = (R::select(odd, cos, sin), R::select(odd, sin, cos));
-    (R::select(half, -s, s), R::select((half | odd) & !(half & odd), -c, c))
+    (s.negated(half), c.negated(half ^ odd))
 }
 
 /// The angle of the point (x, y) from the positive x axis in turns, in [−½, ½]; positive for positive y. 0 at the origin,
@@ -80,11 +82,22 @@ const ATAN_DOUBLE: [[f64; 6]; 2] = [
 /// Horner's scheme, highest coefficient first.
 #[inline(always)]
 fn polynomial<R: Real>(x: R, coefficients: &[f64]) -> R {
-    let mut sum = R::ZERO;
-    for &c in coefficients {
-        sum = sum.mul_add(x, R::lit(c));
+    let Some((&first, rest)) = coefficients.split_first() else { return R::ZERO };
+    rest.iter().fold(R::lit(first), |sum, &c| sum.mul_add(x, R::lit(c)))
+}
+
+/// The same for long polynomials, even and odd powers apart: half the latency.
+#[inline(always)]
+fn long_polynomial<R: Real>(x: R, coefficients: &[f64]) -> R {
+    let z = x * x;
+    // From the highest power down, sums take turns; the constant ends up in `even`.
+    let (mut even, mut odd) = (R::ZERO, R::ZERO);
+    for (i, &c) in coefficients.iter().enumerate() {
+        let sum = if i < 2 { R::lit(c) } else { even.mul_add(z, R::lit(c)) };
+        (even, odd) = (odd, sum);
     }
-    sum
+    // Each turn swapped the two: the last one set is `odd`.
+    even.mul_add(x, odd)
 }
 
 #[inline(always)]

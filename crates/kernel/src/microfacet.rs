@@ -72,19 +72,19 @@ impl<R: Real> Microfacets<R> {
             Self::Beckmann(beckmann) => beckmann.smith_length(w),
         }
     }
-    /// How much of the normals that face away can reflect above the horizon, in [0, 1]; 1 where nothing better is known.
+    /// Which visible normals reflectors sample: those that may reflect above the horizon, as far as that is known.
     #[inline(always)]
-    pub fn bound(&self, wo: Vec3<R>) -> R {
+    pub fn reach(&self, wo: Vec3<R>, s_o: R) -> Reach<R> {
         match self {
-            Self::Ggx(ggx) => ggx.bound(wo),
-            Self::Beckmann(_) => R::ONE,
+            Self::Ggx(ggx) => ggx.reach(wo, s_o),
+            Self::Beckmann(_) => Reach::whole(wo, s_o),
         }
     }
-    /// A normal of any length, distributed as those visible from wo (above the surface), with s(wo) given; within `bound`.
+    /// A normal of any length, distributed as those visible from wo (above the surface) within reach, with s(wo) given.
     #[inline(always)]
-    pub fn sample_visible(&self, wo: Vec3<R>, s_o: R, bound: R, u: [R; 2]) -> Vec3<R> {
+    pub fn sample_visible(&self, wo: Vec3<R>, s_o: R, reach: Reach<R>, u: [R; 2]) -> Vec3<R> {
         match self {
-            Self::Ggx(ggx) => ggx.sample_visible(wo, s_o, bound, u),
+            Self::Ggx(ggx) => ggx.sample_visible(wo, s_o, reach, u),
             Self::Beckmann(beckmann) => beckmann.sample_visible(wo, u),
         }
     }
@@ -106,6 +106,24 @@ impl<R: Real> Microfacets<R> {
     }
 }
 
+/// How far down the mirrored view of the stretched surface samples go: k cos_o + s_o, of which k = 1 are all visible normals.
+#[derive(Clone, Copy, Debug)]
+pub struct Reach<R> {
+    /// k cos_o + s_o.
+    pub depth: R,
+    /// 1 / depth.
+    pub inverse: R,
+}
+
+impl<R: Real> Reach<R> {
+    /// All visible normals.
+    #[inline(always)]
+    pub fn whole(wo: Vec3<R>, s_o: R) -> Self {
+        let depth = wo.z + s_o;
+        Self { depth, inverse: depth.recip() }
+    }
+}
+
 /// G₂/(4 cos_o), which is vis · cos_i; cosines positive, s(wo) and s(wi) given.
 #[inline(always)]
 pub fn vis_cos_i<R: Real>(masking: Masking, cos_o: R, s_o: R, cos_i: R, s_i: R) -> R {
@@ -120,21 +138,18 @@ pub fn vis_cos_i<R: Real>(masking: Masking, cos_o: R, s_o: R, cos_i: R, s_i: R) 
     }
 }
 
-/// Density of the directions that mirror wo in a visible normal within `bound` \[1/sr\], D given:
-/// D/(2(k cos_o + s_o)), for k = 1 G₁(wo) D/(4 cos_o).
+/// Density of the directions that mirror wo in a visible normal within reach \[1/sr\], D given: D/(2(k cos_o + s_o)), for k = 1
+/// G₁(wo) D/(4 cos_o).
 #[inline(always)]
-pub fn pdf_visible_reflected<R: Real>(d: R, bound: R, cos_o: R, s_o: R) -> R {
-    R::lit(0.5) * d / bound.mul_add(cos_o, s_o)
+pub fn pdf_visible_reflected<R: Real>(d: R, reach: Reach<R>) -> R {
+    R::lit(0.5) * d * reach.inverse
 }
 
-/// wo mirrored in the normal along m (any length): 2m(wo·m)/|m|² − wo. Where m is too short to say, in z.
+/// wo mirrored in the normal along m, of any length in [1e-18, 1e18]: 2m(wo·m)/|m|² − wo.
 #[inline(always)]
 pub fn reflect<R: Real>(wo: Vec3<R>, m: Vec3<R>) -> Vec3<R> {
-    let length2 = m.length2();
-    let ok = length2.gt(R::lit(1e-34)) & length2.is_finite();
-    let m = Vec3::select(ok, m, Vec3::unit_z());
-    let twice = R::lit(2.0) * wo.dot(m) / R::select(ok, length2, R::ONE);
-    m * twice - wo
+    let twice = R::lit(2.0) * wo.dot(m) / m.length2();
+    Vec3::new(m.x.mul_add(twice, -wo.x), m.y.mul_add(twice, -wo.y), m.z.mul_add(twice, -wo.z))
 }
 
 /// h and |h|², as they are unless both directions lie nearly in the surface and are opposite: then the squares of h would

@@ -5,10 +5,12 @@
 //! `wide`'s narrow types: `core` has neither, and std's fused multiply-add rounds differently where the target has none.
 
 use core::fmt::Debug;
-use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub};
+use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, Mul, MulAssign, Neg, Not, Sub};
 
 /// The truth of a comparison, lane by lane: `bool` for a scalar.
-pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+pub trait Mask:
+    Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> + Not<Output = Self>
+{
     /// The same truth in every lane.
     fn splat(value: bool) -> Self;
     /// True if some lane is true.
@@ -67,6 +69,8 @@ pub trait Real:
     fn max(self, b: Self) -> Self;
     /// |self| with the sign bit of `sign`, that of a zero included.
     fn copysign(self, sign: Self) -> Self;
+    /// −self where `mask`, self elsewhere.
+    fn negated(self, mask: Self::Mask) -> Self;
     /// self < b, false for NaN.
     fn lt(self, b: Self) -> Self::Mask;
     /// self ≤ b, false for NaN.
@@ -181,6 +185,10 @@ macro_rules! scalar_real {
             #[inline(always)]
             fn copysign(self, sign: $t) -> $t {
                 <$t>::from_bits((self.to_bits() & !$sign) | (sign.to_bits() & $sign))
+            }
+            #[inline(always)]
+            fn negated(self, mask: bool) -> $t {
+                if mask { -self } else { self }
             }
             #[inline(always)]
             fn lt(self, b: $t) -> bool {

@@ -184,8 +184,10 @@ pub(crate) fn transmits(lobe: &AnyLobe<f32>) -> bool {
 pub(crate) fn one_to_one(lobe: &AnyLobe<f32>) -> bool {
     match lobe {
         AnyLobe::Lambert(_) => true,
-        // Kulla and Conty's lobe has a sampler of its own.
-        AnyLobe::Conductor(l) => l.compensation != Compensation::KullaConty,
+        // Beckmann's steep slopes are reached from two places, and Kulla and Conty's lobe has a sampler of its own.
+        AnyLobe::Conductor(l) => {
+            matches!(l.microfacets, Microfacets::Ggx(_)) && l.compensation != Compensation::KullaConty
+        }
         AnyLobe::Phong(l) => l.diffuse.largest() == 0.0 || l.glossy.largest() == 0.0,
         _ => false,
     }

@@ -131,7 +131,7 @@ fn smooth(p: &[f64], wo: Dir, wi: Dir) -> Numbers {
 fn unbounded(p: &[f64], wo: Dir) -> f64 {
     let ggx = ggx(p);
     let s = ggx.smith_length(wo);
-    (ggx.bound(wo) * wo.z + s) / (wo.z + s)
+    ggx.reach(wo, s).depth / (wo.z + s)
 }
 
 /// What turns exact Beckmann masking into Walter's (2007, equation 27).

@@ -15,7 +15,7 @@ use crate::random::{Random, direction};
 use crate::statistics::mean_p;
 use gonio_kernel::energy::{Missing, conductor_avg, missing_avg, multiple_fresnel, scattered_again};
 use gonio_kernel::fresnel::conductor;
-use gonio_kernel::microfacet::Ggx;
+use gonio_kernel::microfacet::{Ggx, Reach};
 
 /// Where a walk ended.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +50,8 @@ pub(crate) fn walk(
         }
         below = (below / u.powf(1.0 / lambda)).clamp(0.0, 1.0);
         // Visible from below the surface as well: the spherical cap does not mind.
-        let m = ggx.sample_visible(-ray, ggx.smith_length(ray), 1.0, [random.uniform(), random.uniform()]);
+        let s = ggx.smith_length(ray);
+        let m = ggx.sample_visible(-ray, s, Reach::whole(-ray, s), [random.uniform(), random.uniform()]);
         let m = m.normalize_or(Dir::unit_z());
         let cos = -ray.dot(m);
         ray = (ray + m * (2.0 * cos)).normalize();

@@ -82,11 +82,10 @@ macro_rules! functions {
             fresnel::interface(cos_o: R, cos_t: R, eta: R) -> Interface<R>;
             fresnel::dielectric(cos_o: R, eta: R) -> R;
             fresnel::conductor(cos_o: R, eta: R, k: R) -> R;
-            fresnel::conductor_rgb(cos_o: R, eta: Rgb<R>, k: Rgb<R>) -> Rgb<R>;
             fresnel::schlick(cos_o: R, f0: R) -> R;
             fresnel::f82(cos_o: R, f0: R, tint: R) -> R;
             microfacet::vis_cos_i(masking: Masking, cos_o: R, s_o: R, cos_i: R, s_i: R) -> R;
-            microfacet::pdf_visible_reflected(d: R, bound: R, cos_o: R, s_o: R) -> R;
+            microfacet::pdf_visible_reflected(d: R, reach: Reach<R>) -> R;
             microfacet::reflect(wo: Vec3<R>, m: Vec3<R>) -> Vec3<R>;
             math::atan2_turns(y: R, x: R) -> R;
             math::sin_cos_turns(u: R) -> (R, R);

@@ -23,7 +23,7 @@ use crate::energy::{
 };
 use crate::frame::both_above;
 use crate::fresnel::Fresnel;
-use crate::microfacet::{Masking, Microfacets, pdf_visible_reflected, reflect, vis_cos_i};
+use crate::microfacet::{Masking, Microfacets, Reach, pdf_visible_reflected, reflect, vis_cos_i};
 use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
 use crate::vec3::Vec3;
@@ -87,28 +87,30 @@ impl<R: Real> Conductor<R> {
 }
 
 impl<R: Real> Lobe<R> for Conductor<R> {
-    /// s(wo), the bound of visible normals, and 1 − E(wo) if it is asked for.
+    /// s(wo), the reach of visible normals, and 1 − E(wo) if it is asked for.
     #[inline(always)]
     fn prepare(&self, wo: Vec3<R>) -> Prepared<R> {
         let missing = match self.compensation {
             Compensation::None => R::ZERO,
             _ => Missing::of(self.width()).at(wo.z.max(R::lit(1e-38)).min(R::ONE)),
         };
-        Prepared([self.microfacets.smith_length(wo), self.microfacets.bound(wo), missing, R::ZERO])
+        let s_o = self.microfacets.smith_length(wo);
+        let Reach { depth, inverse } = self.microfacets.reach(wo, s_o);
+        Prepared([s_o, depth, inverse, missing])
     }
 
     #[inline(always)]
     fn eval_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
-        let Prepared([s_o, bound, missing_o, _]) = *prepared;
+        let Prepared([s_o, depth, inverse, missing_o]) = *prepared;
         let h = wo + wi;
         let h2 = h.length2();
         let s_i = self.microfacets.smith_length(wi);
         let d = self.microfacets.d(h, h2);
         // wo·m = |h|/2 for unit directions: no cancellation at grazing, and never above 1 but by rounding.
-        let cos_m = (h2.sqrt() * R::lit(0.5)).min(R::ONE);
-        let f = self.fresnel.reflectance(cos_m);
+        let cos2_m = (h2 * R::lit(0.25)).min(R::ONE);
+        let f = self.fresnel.reflectance_of_squared(cos2_m.sqrt(), cos2_m);
         let f_cos = f * (d * vis_cos_i(self.masking, wo.z, s_o, wi.z, s_i));
-        let pdf = pdf_visible_reflected(d, bound, wo.z, s_o);
+        let pdf = pdf_visible_reflected(d, Reach { depth, inverse });
         let single = Value { f_cos, pdf };
         let value = match self.compensation {
             Compensation::None => single,
@@ -121,10 +123,11 @@ impl<R: Real> Lobe<R> for Conductor<R> {
         value.or_zero(both_above(wo, wi))
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
-        let Prepared([s_o, bound, missing_o, _]) = *prepared;
-        let mut wi = reflect(wo, self.microfacets.sample_visible(wo, s_o, bound, [u[1], u[2]]));
+        let Prepared([s_o, depth, inverse, missing_o]) = *prepared;
+        let reach = Reach { depth, inverse };
+        let mut wi = reflect(wo, self.microfacets.sample_visible(wo, s_o, reach, [u[1], u[2]]));
         if self.compensation == Compensation::KullaConty {
             wi = Vec3::select(u[0].lt(missing_o), sample_multiple(self.width(), [u[1], u[2]]), wi);
         }

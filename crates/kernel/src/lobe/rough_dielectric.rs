@@ -21,7 +21,7 @@ use super::dielectric::relative_index;
 use super::{Event, Lobe, Prepared, Sample, Value};
 use crate::frame::turned;
 use crate::fresnel::{index_in_domain, interface, refracted_cosine};
-use crate::microfacet::{Masking, Microfacets, pdf_visible_reflected, reflect, vis_cos_i};
+use crate::microfacet::{Masking, Microfacets, Reach, pdf_visible_reflected, reflect, vis_cos_i};
 use crate::real::Real;
 use crate::rgb::Rgb;
 use crate::vec3::Vec3;
@@ -58,23 +58,27 @@ impl<R: Real> RoughDielectric<R> {
 }
 
 impl<R: Real> Lobe<R> for RoughDielectric<R> {
-    /// s(wo) and η seen from wo.
+    /// s(wo), the reach of visible normals, and η seen from wo.
     #[inline(always)]
     fn prepare(&self, wo: Vec3<R>) -> Prepared<R> {
-        Prepared([self.microfacets.smith_length(wo), relative_index(self.eta, wo), R::ZERO, R::ZERO])
+        let s_o = self.microfacets.smith_length(wo);
+        let Reach { depth, inverse } = Reach::whole(turned(wo, wo), s_o);
+        Prepared([s_o, depth, inverse, relative_index(self.eta, wo)])
     }
 
     #[inline]
     fn eval_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
-        let Prepared([s_o, eta, ..]) = *prepared;
+        let Prepared([s_o, depth, inverse, eta]) = *prepared;
+        let reach = Reach { depth, inverse };
         let (wi, wo) = (turned(wo, wi), turned(wo, wo));
         let through = wi.z.lt(R::ZERO);
         let (c_o, c_i) = (wo.z, wi.z.abs());
 
         let turn = R::select(through, eta, R::ONE);
         let h = wo + wi * turn;
-        // The side that wo sees. A normal sampled in the surface itself may come back a rounding below it.
-        let h = Vec3::select(wo.dot(h).lt(R::ZERO), -h, h);
+        // The side that wo sees, which for reflection is above, whatever rounding makes of wo·h at grazing. A normal sampled in the
+        // surface itself may come back a rounding below it.
+        let h = Vec3::select(through & wo.dot(h).lt(R::ZERO), -h, h);
         let upwards = h.z.ge(turn.mul_add(c_i, c_o) * R::lit(-4.0) * R::EPSILON);
         let h2 = h.length2();
         let (wo_h, wi_h) = (wo.dot(h), wi.dot(h));
@@ -90,13 +94,13 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
 
         let reflected = Value {
             f_cos: Rgb::splat(at.reflected * d * vis_cos_i(self.masking, c_o, s_o, c_i, s_i)),
-            pdf: at.reflected * pdf_visible_reflected(d, R::ONE, c_o, s_o),
+            pdf: at.reflected * pdf_visible_reflected(d, reach),
         };
         // dω_m/dω_i · |wo·m| = |wo·h| |wi·h| η²/|h|⁴; both cosines of h first over |h|², so that nothing under- or overflows.
         let turning = (wo_h / h2) * (wi_h.abs() / h2) * at.transmitted * d * R::lit(4.0);
         let refracted = Value {
             f_cos: Rgb::splat(turning * vis_cos_i(Masking::Separable, c_o, s_o, c_i, s_i)),
-            pdf: turning * (eta * eta) * pdf_visible_reflected(R::ONE, R::ONE, c_o, s_o),
+            pdf: turning * (eta * eta) * pdf_visible_reflected(R::ONE, reach),
         };
         // Both must see the front of the microfacet: wo from above, a refracted wi from below.
         let faces = upwards & wo_h.gt(R::ZERO) & wi_h.lt(R::ZERO);
@@ -108,9 +112,10 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
 
     #[inline]
     fn sample_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
-        let Prepared([s_o, eta, ..]) = *prepared;
+        let Prepared([s_o, depth, inverse, eta]) = *prepared;
+        let reach = Reach { depth, inverse };
         let up = turned(wo, wo);
-        let m = self.microfacets.sample_visible(up, s_o, R::ONE, [u[1], u[2]]).normalize_or(Vec3::unit_z());
+        let m = self.microfacets.sample_visible(up, s_o, reach, [u[1], u[2]]).normalize_or(Vec3::unit_z());
         let cos_m = up.dot(m).max(R::ZERO).min(R::ONE);
         let cos_t = refracted_cosine(cos_m, eta);
         let at = interface(cos_m, cos_t, eta);

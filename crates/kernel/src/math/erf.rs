@@ -5,52 +5,64 @@
 //! Both are minimax polynomials by Remez' algorithm with 50 digits. The inverse is that of Giles 2010,
 //! "Approximating the erfinv function" (GPU Computing Gems, Jade Edition), with his coefficients.
 
-use super::{exp, ln, polynomial};
-use crate::real::{Precision, Real};
+use super::{exp_negative, ln, ln_normal, long_polynomial, polynomial};
+use crate::real::{Mask, Precision, Real};
 
 /// erf x: at most 2 ulp; ±1 of ±∞, NaN of NaN.
 #[inline]
 pub fn erf<R: Real>(x: R) -> R {
-    erf_and_exp(x).0
+    let ax = x.abs();
+    let small = ax.mul_add(polynomial(x * x, small_coefficients::<R>()), ax);
+    let large = R::ONE - erfc_and_exp(ax).0;
+    R::select(ax.ge(R::ONE), large, small).copysign(x)
 }
 
-/// erf x and exp(−x²), which costs nothing more.
-#[inline]
-pub(crate) fn erf_and_exp<R: Real>(x: R) -> (R, R) {
-    let z = x * x;
-    let ax = x.abs();
-    let e = exp(-z);
-    let small = ax.mul_add(polynomial(z, small_coefficients::<R>()), ax);
-    let large = R::ONE - e * R::lit(core::f64::consts::FRAC_2_SQRT_PI) * scaled_erfc(ax);
-    (R::select(ax.lt(R::ONE), small, large).copysign(x), e)
+/// erfc x for x ≥ 0, with an error below an ulp of 1 however small it is, and exp(−x²), which costs nothing more.
+#[inline(always)]
+pub(crate) fn erfc_and_exp<R: Real>(x: R) -> (R, R) {
+    let e = exp_negative(-(x * x));
+    (e * R::lit(core::f64::consts::FRAC_2_SQRT_PI) * scaled_erfc(x), e)
 }
 
 /// X(x) = (√π/2) exp(x²) erfc(x) for x ≥ 0, constant from 4.5 on in `f32`, from 6.5 in `f64`, where exp(−x²) ends what it
 /// can add to 1. Its error times exp(−x²) is below a third of an ulp of 1, and that of X itself below 1e-3 of X (1e-6).
-#[inline]
-pub(crate) fn scaled_erfc<R: Real>(x: R) -> R {
+#[inline(always)]
+fn scaled_erfc<R: Real>(x: R) -> R {
     let last = match R::PRECISION {
         Precision::Single => 4.5,
         Precision::Double => 6.5,
     };
-    polynomial(x.min(R::lit(last)) - R::ONE, scaled_coefficients::<R>())
+    long_polynomial(x.min(R::lit(last)) - R::ONE, scaled_coefficients::<R>())
 }
 
 /// The y with erf y = x, for |x| < 1: at most 6 ulp in `f32`, 4 in `f64`.
 #[inline]
 pub fn erf_inv<R: Real>(x: R) -> R {
-    let w = -ln((R::ONE - x) * (R::ONE + x));
-    let root = w.max(R::ZERO).sqrt();
-    let mut ratio = R::ZERO;
-    for piece in inverse_pieces::<R>() {
-        let argument = if piece.from > 0.0 { root } else { w };
-        let value = polynomial(argument - R::lit(piece.middle), piece.coefficients);
-        ratio = R::select(w.ge(R::lit(piece.from)), value, ratio);
-    }
-    x * ratio
+    x * erf_inv_over(-ln((R::ONE - x) * (R::ONE + x)))
 }
 
-/// A polynomial for w from `from` on, in w − middle, or √w − middle where `from` is not 0.
+/// [`erf_inv`] of x in \[−1, 1\] that stops where the last number below 1 is half way to it: always finite.
+#[inline(always)]
+pub(crate) fn erf_inv_within<R: Real>(x: R) -> R {
+    x * erf_inv_over(-ln_normal(((R::ONE - x) * (R::ONE + x)).max(R::EPSILON * R::lit(0.25))))
+}
+
+/// erf⁻¹(x)/x from w = −ln(1 − x²). Beyond the first piece, which holds all but 0.4 % of \[−1, 1\], only if some lane is there.
+#[inline(always)]
+pub(crate) fn erf_inv_over<R: Real>(w: R) -> R {
+    let Some((near, far)) = inverse_pieces::<R>().split_first() else { return R::ZERO };
+    let mut ratio = long_polynomial(w - R::lit(near.middle), near.coefficients);
+    for piece in far {
+        let beyond = w.ge(R::lit(piece.from));
+        if beyond.any() {
+            let value = long_polynomial(w.max(R::ZERO).sqrt() - R::lit(piece.middle), piece.coefficients);
+            ratio = R::select(beyond, value, ratio);
+        }
+    }
+    ratio
+}
+
+/// A polynomial for w from `from` on, in w − middle for the first piece, in √w − middle for the others.
 struct Piece {
     from: f64,
     middle: f64,

@@ -10,18 +10,36 @@ use crate::real::{Precision, Real};
 /// stalls all eight; +∞ beyond the largest; NaN of NaN.
 #[inline(always)]
 pub fn exp<R: Real>(x: R) -> R {
-    exp_of_sum(x, R::ZERO)
+    limited(x, reduce(x))
+}
+
+/// [`exp`] of x ≤ 0; 0 of NaN.
+#[inline(always)]
+pub(crate) fn exp_negative<R: Real>(x: R) -> R {
+    let (n, r) = reduce(x);
+    reduced(n, r).or_zero(x.ge(R::lit(range::<R>()[0])))
 }
 
 /// e^(x + y), where y is what x was rounded by, or 0.
 #[inline(always)]
 pub(super) fn exp_of_sum<R: Real>(x: R, y: R) -> R {
     let (n, r) = reduce(x);
-    let r = r + y;
-    let p = R::ONE + r.mul_add(r * polynomial(r, coefficients::<R>()), r);
+    limited(x, (n, r + y))
+}
+
+/// 2ⁿeʳ, the exponential of about x.
+#[inline(always)]
+fn limited<R: Real>(x: R, (n, r): (R::Int, R)) -> R {
     let [least, largest] = range::<R>();
     // Only what lies between the ends has an exponent; beyond, x is positive, or NaN.
-    R::select(x.le(R::lit(largest)), p.ldexp(n).or_zero(x.ge(R::lit(least))), x * R::lit(f64::INFINITY))
+    let inside = reduced(n, r).or_zero(x.ge(R::lit(least)));
+    R::select(x.le(R::lit(largest)), inside, x * R::lit(f64::INFINITY))
+}
+
+/// 2ⁿeʳ for |r| up to about ½ ln 2.
+#[inline(always)]
+fn reduced<R: Real>(n: R::Int, r: R) -> R {
+    (R::ONE + r.mul_add(r * polynomial(r, coefficients::<R>()), r)).ldexp(n)
 }
 
 /// factor·root², flushed to 0 below 2⁻¹²⁶ in `f32` without a denormal number on the way (one stalls all eight lanes). With

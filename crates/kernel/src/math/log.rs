@@ -4,7 +4,7 @@
 //! (Ng 1993). P is a minimax polynomial by Remez' algorithm with 50 digits, in `f64` one degree above fdlibm's, for `pow`.
 
 use super::exp::{exp_of_sum, ln_2};
-use super::polynomial;
+use super::{long_polynomial, polynomial};
 use crate::real::{Precision, Real};
 
 /// ln x: at most 2 ulp, denormal numbers included. −∞ of 0, NaN below and of NaN, +∞ of +∞.
@@ -13,6 +13,13 @@ pub fn ln<R: Real>(x: R) -> R {
     let (m, k) = split(x);
     let f = m - R::ONE;
     special(x, ln_of_parts(f, k))
+}
+
+/// [`ln`] of a positive, normal, finite x.
+#[inline(always)]
+pub(crate) fn ln_normal<R: Real>(x: R) -> R {
+    let (m, k) = x.split_exponent();
+    ln_of_parts(m - R::ONE, k)
 }
 
 /// ln(1 + x) without cancellation: at most 2 ulp. −∞ of −1, NaN below and of NaN, +∞ of +∞.
@@ -61,15 +68,32 @@ fn split<R: Real>(x: R) -> (R, R) {
 /// ln((1 + f)·2ᵏ).
 #[inline(always)]
 fn ln_of_parts<R: Real>(f: R, k: R) -> R {
-    let s = f / (R::lit(2.0) + f);
-    let z = s * s;
-    let half_square = R::lit(0.5) * f * f;
-    let r = z * polynomial(z, coefficients::<R>());
+    let square = f * f;
+    let half_square = R::lit(0.5) * square;
     let [high, low] = ln_2::<R>();
-    // f − f²/2 + s(f²/2 + r): the large term last.
-    let small = s.mul_add(half_square + r, k * low);
-    k.mul_add(high, f - (half_square - small))
+    let cubic = match R::PRECISION {
+        Precision::Single => square * (f * long_polynomial(f, &DIRECT)),
+        Precision::Double => {
+            let s = f / (R::lit(2.0) + f);
+            let z = s * s;
+            s * z.mul_add(polynomial(z, coefficients::<R>()), half_square)
+        }
+    };
+    // f − f²/2 + cubic: the large term last.
+    k.mul_add(high, f - (half_square - k.mul_add(low, cubic)))
 }
+
+/// (ln(1 + f) − f + f²/2)/f³ for `f32`, where a division would cost more than the longer polynomial.
+const DIRECT: [f64; 8] = [
+    -7.634_544_569_117e-2,
+    0.127_616_544_219_6,
+    -0.131_602_012_627_1,
+    0.142_017_490_768_6,
+    -0.166_233_546_470_3,
+    0.200_012_271_523,
+    -0.250_008_211_102_5,
+    0.333_333_317_056_8,
+];
 
 /// ln x of a positive x as the sum of two numbers, right to about 2⁻³⁰ of itself in `f32` (2⁻⁵⁹ in `f64`).
 #[inline(always)]

@@ -15,7 +15,7 @@
 //! Nothing is formed by subtraction: D comes from the unnormalised half vector, which stays exact near the mirror
 //! direction. Cost: D one division, s one root, a visible normal one division and one root.
 
-use super::{lengthened, widths_in_domain};
+use super::{Reach, lengthened, widths_in_domain};
 use crate::math::sin_cos_turns;
 use crate::real::Real;
 use crate::vec3::Vec3;
@@ -56,27 +56,40 @@ impl<R: Real> Ggx<R> {
         x.mul_add(x, y.mul_add(y, w.z * w.z)).sqrt()
     }
 
-    /// How much of the lower cap can reflect above the horizon, in [0, 1]: Eto & Tokuyoshi's k at wo above the surface.
-    /// k = (1 − α²)(1 + sinθ)²/((1 + sinθ)² + α²cos²θ) with the lesser width.
+    /// How much of the lower cap can reflect above the horizon, in [0, 1]: Eto & Tokuyoshi's
+    /// k = (1 − α²)(1 + sinθ)²/((1 + sinθ)² + α²cos²θ) with the lesser width, as a fraction from which
+    /// cos²θ = (1 + sinθ)(1 − sinθ) has cancelled a factor.
     #[inline(always)]
-    pub fn bound(&self, wo: Vec3<R>) -> R {
+    fn bound_fraction(&self, wo: Vec3<R>) -> (R, R) {
         let a2 = self.alpha_x.min(self.alpha_y).sqr();
-        let s2 = (R::ONE + wo.x.mul_add(wo.x, wo.y * wo.y).sqrt()).sqr();
-        (R::ONE - a2) * s2 / a2.mul_add(wo.z * wo.z, s2)
+        let sin = wo.x.mul_add(wo.x, wo.y * wo.y).sqrt();
+        let kept = (R::ONE - a2).mul_add(sin, R::ONE - a2);
+        (kept, R::lit(2.0).mul_add(a2, kept))
     }
 
-    /// A normal of any length, distributed as those visible from wo (above the surface), with s(wo) given. `bound` is 1 for
-    /// all visible normals, or [`Ggx::bound`] for those that may reflect above the horizon.
+    /// See [`Reach`]: normals that may reflect above the horizon, as far as Eto & Tokuyoshi's bound k tells.
     #[inline(always)]
-    pub fn sample_visible(&self, wo: Vec3<R>, s_o: R, bound: R, u: [R; 2]) -> Vec3<R> {
-        // In the stretched space the surface is a unit hemisphere, and its mirrored view fills a spherical cap.
-        let o = Vec3::new(self.alpha_x * wo.x, self.alpha_y * wo.y, wo.z) * s_o.recip();
+    pub fn reach(&self, wo: Vec3<R>, s_o: R) -> Reach<R> {
+        let (kept, of) = self.bound_fraction(wo);
+        // Two divisions, but a sampler needs but one of them, and a density the other.
+        Reach { depth: (kept / of).mul_add(wo.z, s_o), inverse: of / kept.mul_add(wo.z, s_o * of) }
+    }
+
+    /// A normal of any length, distributed as those visible from wo (above the surface) within reach, with s(wo) given.
+    #[inline(always)]
+    pub fn sample_visible(&self, wo: Vec3<R>, s_o: R, reach: Reach<R>, u: [R; 2]) -> Vec3<R> {
+        // In the stretched space the surface is a hemisphere, and its mirrored view fills a spherical cap. Of radius s rather
+        // than 1, because wo is that long there and nothing needs to be divided.
         let (sin_phi, cos_phi) = sin_cos_turns(u[0]);
-        let lowest = bound * o.z;
-        let z = (R::ONE - u[1]).mul_add(R::ONE + lowest, -lowest);
-        let sin_theta = ((R::ONE - z) * (R::ONE + z)).max(R::ZERO).sqrt();
-        let m = Vec3::new(sin_theta.mul_add(cos_phi, o.x), sin_theta.mul_add(sin_phi, o.y), z + o.z);
-        Vec3::new(self.alpha_x * m.x, self.alpha_y * m.y, m.z.max(R::ZERO))
+        let depth = u[1] * reach.depth; // below the pole; s ≥ k|wo.z|, so it is not below the other one
+        let r = (depth * (s_o + s_o - depth)).sqrt();
+        let m = Vec3::new(
+            r.mul_add(cos_phi, self.alpha_x * wo.x),
+            r.mul_add(sin_phi, self.alpha_y * wo.y),
+            // Its square is not 0, and it tips over no normal of the narrowest surface.
+            (s_o + wo.z - depth).max(R::lit(1e-18)),
+        );
+        Vec3::new(self.alpha_x * m.x, self.alpha_y * m.y, m.z)
     }
 
     /// Whether both widths lie in [1e-8, 1].
@@ -134,8 +147,9 @@ mod tests {
             for _ in 0..1000 {
                 let wo = random.above();
                 let u = [random.unit(), random.unit()];
-                for bound in [1.0, ggx.bound(wo)] {
-                    let m = ggx.sample_visible(wo, ggx.smith_length(wo), bound, u).normalize();
+                let s_o = ggx.smith_length(wo);
+                for reach in [Reach::whole(wo, s_o), ggx.reach(wo, s_o)] {
+                    let m = ggx.sample_visible(wo, s_o, reach, u).normalize();
                     assert!(close(m.length().into(), 1.0, 1e-6) && m.z >= 0.0 && m.dot(wo) >= -1e-6, "{wo:?} {m:?}");
                 }
             }
@@ -150,12 +164,13 @@ mod tests {
             let ggx = Ggx { alpha_x, alpha_y };
             for _ in 0..10_000 {
                 let wo = Vec3::from(<[f32; 3]>::from(random.above()).map(f64::from));
-                let (s_o, k) = (ggx.smith_length(wo), ggx.bound(wo));
+                let (s_o, (kept, of)) = (ggx.smith_length(wo), ggx.bound_fraction(wo));
+                let k = kept / of;
                 let u: f64 = random.unit().into();
                 // z of the cap, uniform over all visible normals; those below −k o_z are left out.
                 let (o_z, z) = (wo.z / s_o, (1.0 - u).mul_add(1.0 + wo.z / s_o, -wo.z / s_o));
                 if z < -k * o_z {
-                    let m = ggx.sample_visible(wo, s_o, 1.0, [random.unit().into(), u]).normalize();
+                    let m = ggx.sample_visible(wo, s_o, Reach::whole(wo, s_o), [random.unit().into(), u]).normalize();
                     assert!((m * (2.0 * wo.dot(m)) - wo).z <= 1e-12, "{wo:?} {m:?}");
                 }
             }
