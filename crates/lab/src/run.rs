@@ -198,7 +198,9 @@ fn kernel_tasks() -> Vec<Task<'static>> {
     }));
     for function in &elementary::FUNCTIONS {
         let name = format!("{} f32", function.name);
-        tasks.push(Task::new("elementary", name, 0, |run| elementary::measure_function(function, run)));
+        tasks.push(Task::new("elementary", name, 0, |run| {
+            elementary::measure_function(function, elementary::stride(run))
+        }));
     }
     tasks.push(Task::new("elementary", "pow f32", 0, |run| elementary::measure_pow(gonio_kernel::math::pow, run)));
     tasks.push(Task::new("warps", "uniform triangle f32", 1, |run| {
