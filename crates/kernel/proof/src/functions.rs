@@ -5,7 +5,7 @@
 use crate::{colour, direction, some};
 use core::hint::black_box;
 use gonio_kernel::fresnel::Interface;
-use gonio_kernel::microfacet::Masking;
+use gonio_kernel::microfacet::{Masking, Reach};
 use gonio_kernel::{F32x8, Real, Rgb, Vec3, energy, frame, fresnel, math, microfacet, warp};
 
 /// An argument that the optimiser knows nothing about.
@@ -25,6 +25,11 @@ impl<R: Real> Unknown for Rgb<R> {
 impl Unknown for Masking {
     fn unknown() -> Self {
         if black_box(true) { Masking::HeightCorrelated } else { Masking::Separable }
+    }
+}
+impl<R: Real> Unknown for Reach<R> {
+    fn unknown() -> Self {
+        Self { depth: some(1.4), inverse: some(0.7) }
     }
 }
 impl<R: Real> Unknown for [R; 2] {
