@@ -20,6 +20,7 @@ use crate::usage::{Usage, spinner};
 use anyhow::{Context, Result};
 use gonio_lab::{Check, Effort, Options, Outcome, validate_kernel};
 use report::Report;
+use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -31,15 +32,15 @@ const SIGNIFICANCE: f64 = 0.005;
 /// Run every physical check and write a report.
 ///
 /// Measures the kernel's lobes with every instrument, renders furnace scenes whose answer is known, and casts the same rays
-/// with every backend. Prints one line per instrument and what failed; writes report.json and report.html to the output
-/// folder. With a correct build, all tests of a run together fail by chance with probability 0.01 at most, at any seed.
+/// with every backend. Prints one line per instrument and what failed; writes report.html, report.json and
+/// summary.json (by instrument) to the output folder. With a correct build, all tests of a run together fail by chance with probability 0.01 at most, at any seed.
 /// Exits with 0 if everything that ran passed, with 3 otherwise.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Under a minute: every instrument, fewer rows
+    /// A minute or two: every instrument and row, small samples
     #[arg(long, conflicts_with = "full")]
     quick: bool,
-    /// The sample counts that find the smallest faults: many minutes
+    /// As many samples as the smallest faults need, every bit pattern of elementary functions: most of an hour
     #[arg(long)]
     full: bool,
     /// Only the instrument of this name, or checks whose subject contains this text
@@ -48,7 +49,7 @@ pub(crate) struct Args {
     /// Where all random numbers come from: a number, or "random"
     #[arg(long, value_name = "N|random", default_value = "1", value_parser = seed)]
     seed: u64,
-    /// Folder for report.json, report.html and the rendered pictures; it is made if it does not exist
+    /// Folder for reports and rendered pictures; it is made if it does not exist
     #[arg(long, value_name = "DIR", default_value = "target/validate")]
     out: PathBuf,
     /// Print the report to standard output as JSON instead of the table
@@ -112,8 +113,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
 
     let report = Report::new(&options, checks, table, instruments(), start.elapsed().as_secs_f64());
-    let json = serde_json::to_string_pretty(&report).context("the report cannot be written as JSON")? + "\n";
+    let json = json_text(&report)?;
     write_text(&Target::File(args.out.join("report.json")), &json)?;
+    write_text(&Target::File(args.out.join("summary.json")), &json_text(&report.totals())?)?;
     write_text(&Target::File(args.out.join("report.html")), &html::page(&report, &pictures, &plots))?;
     let printed = if args.json {
         json
@@ -122,6 +124,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     write_text(&Target::Stdout, &printed)?;
     Ok(ExitCode::from(if report.failed == 0 { 0 } else { 3 }))
+}
+
+fn json_text(report: &impl Serialize) -> Result<String> {
+    Ok(serde_json::to_string_pretty(report).context("the report cannot be written as JSON")? + "\n")
 }
 
 fn planted_failure() -> Check {

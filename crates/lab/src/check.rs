@@ -6,11 +6,11 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Effort {
-    /// Under a minute in all: every instrument, fewer rows.
+    /// A minute or two: every instrument and row, small samples.
     Quick,
-    /// Every row.
+    /// Ten times the samples.
     Standard,
-    /// Every row, with the sample counts that find the smallest faults.
+    /// As many samples as the smallest faults need, every bit pattern of elementary functions; most of an hour.
     Full,
 }
 

@@ -19,7 +19,7 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
     // wo is unit to 2 eps in |w|². Mirrored by 2m(wo·m)/|m|² − wo its length changes by the error of the factor: at most 7
     // roundings of half an eps, doubled by the square and by the 2, so 14 eps.
     let mut finding = Finding::at_most(16.0 * view.probe.epsilon(), "max | |wi|² − 1 | ≤");
-    for _ in 0..run.by_effort(10_000, 100_000, 1_000_000) {
+    for _ in 0..run.by_effort(10_000, 100_000, 300_000) {
         let wo = view.any_wo(&mut random);
         let u = extreme_input(&mut random, view.probe.single());
         let draw = view.probe.sample(wo, u);

@@ -16,7 +16,7 @@ use gonio_kernel::Properties;
 pub(crate) fn measure(view: View, run: &Run) -> Finding {
     let mut random = run.random();
     let mut finding = Finding::p_value(run.level);
-    let n = run.by_effort(20_000, 200_000, 600_000);
+    let n = run.by_effort(20_000, 100_000, 300_000);
     for at in view.prepared() {
         let sampled = sample(view, at.wo, n, &mut random);
         // Where no bound is promised, the largest weight of the sample must do.

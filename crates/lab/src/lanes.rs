@@ -218,7 +218,7 @@ pub(crate) fn compare(
     let mut random = run.random();
     let mut finding = Finding::at_most(0.0, "numbers that differ in a bit ≤");
     let (mut differing, mut first) = (0_usize, String::new());
-    let rounds = run.by_effort(4_000, 40_000, 400_000);
+    let rounds = run.by_effort(4_000, 40_000, 100_000);
     let mut wide: [Vec<f32>; 8] = Default::default();
     let mut narrow = Vec::new();
     for _ in 0..rounds {

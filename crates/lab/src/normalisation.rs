@@ -12,7 +12,7 @@ use crate::subject::{Prepared, View};
 pub(crate) fn measure(view: View, run: &Run) -> Finding {
     let mut random = run.random();
     let mut finding = Finding::p_value(run.level);
-    let n = run.by_effort(50_000, 500_000, 2_000_000);
+    let n = run.by_effort(50_000, 500_000, 1_000_000);
     for Prepared { name, wo, total: integral, .. } in view.prepared() {
         let (mut failed, mut discrete) = (0, Vec::new());
         let (mut u, mut draws) = (Vec::new(), Vec::new());

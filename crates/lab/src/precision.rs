@@ -26,7 +26,7 @@ pub(crate) fn measure(single: View, run: &Run) -> Finding {
     let limit = f64::from(single.claims.properties.units);
     let mut finding = Finding::at_most(limit, "max |f32 − f64| / max(eps·f, largest change by one ulp of an input) ≤");
     let mut relative = 0.0_f64;
-    for _ in 0..run.by_effort(3_000, 30_000, 300_000) {
+    for _ in 0..run.by_effort(3_000, 30_000, 100_000) {
         let Some((wo, wi)) = single.pair(&mut random) else { continue };
         let [rough, exact, errors] = errors(single, wo, wi);
         for (i, error) in errors.into_iter().enumerate() {

@@ -23,7 +23,7 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
         false => Finding::at_least(1.0, "not reciprocal by design: max |f(wo,wi) − f(wi,wo)| in rounding limits ≥"),
     };
     let mut residual = 0.0_f64;
-    for _ in 0..run.by_effort(5_000, 50_000, 1_000_000) {
+    for _ in 0..run.by_effort(5_000, 50_000, 200_000) {
         let Some((wo, wi)) = view.pair(&mut random) else { continue };
         // Importance on its way through: f(wo, wi) η_o² = f(wi, wo) η_i².
         let through = if wo.z * wi.z < 0.0 { view.probe.compression(wo) } else { 1.0 };

@@ -70,7 +70,7 @@ pub(crate) fn measure_triangle(sample: TriangleWarp, run: &Run) -> Finding {
     const SIDE: usize = 8;
     let mut random = run.random();
     let mut finding = Finding::p_value(run.level);
-    let n = run.by_effort(400_000, 4_000_000, 40_000_000);
+    let n = run.by_effort(400_000, 4_000_000, 10_000_000);
     let mut counts = [[0_u64; 2]; SIDE * SIDE];
     for _ in 0..n {
         let [b1, b2] = sample([random.coarse(), random.coarse()]);

@@ -20,7 +20,7 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
         true => Finding::at_most(1.0 + slack, "max f_cos/(pdf · bound) ≤"),
         false => Finding::at_most(f64::MAX, "max f_cos/pdf is finite ≤"),
     };
-    for _ in 0..run.by_effort(4_000, 40_000, 400_000) {
+    for _ in 0..run.by_effort(4_000, 40_000, 200_000) {
         let Some((wo, wi)) = view.pair(&mut random) else { continue };
         let bound = if promises { view.probe.weight_bound(wo) } else { 1.0 };
         let mut judge = |worth: Worth, wi: Dir, what: &str| {

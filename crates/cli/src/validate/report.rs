@@ -1,5 +1,6 @@
 //! The report: all checks, their sums, and the circumstances under which they were made.
 
+use super::grade::{groups, worst};
 use crate::census::record::Log;
 use crate::environment::Environment;
 use gonio_lab::{Check, Effort, Options, Outcome};
@@ -30,6 +31,34 @@ pub(super) struct Instrument {
     pub(super) proves: &'static str,
 }
 
+/// What `summary.json` holds: a report whose checks are summed up by instrument, small enough to be kept.
+#[derive(Debug, Serialize)]
+pub(super) struct Summary<'a> {
+    version: &'a str,
+    effort: Effort,
+    seed: u64,
+    passed: usize,
+    failed: usize,
+    not_run: usize,
+    seconds: f64,
+    environment: &'a Environment,
+    instruments: Vec<Total<'a>>,
+}
+
+/// All checks of one instrument.
+#[derive(Debug, Serialize)]
+struct Total<'a> {
+    name: &'a str,
+    proves: &'a str,
+    passed: usize,
+    failed: usize,
+    not_run: usize,
+    /// The check that came closest to its limit, or failed it by most.
+    worst: Option<&'a Check>,
+    /// Everything it was used on.
+    subjects: Vec<&'a str>,
+}
+
 impl Report {
     /// Counts the checks of a finished run.
     pub(super) fn new(
@@ -39,8 +68,7 @@ impl Report {
         instruments: Vec<(&'static str, &'static str)>,
         seconds: f64,
     ) -> Self {
-        let passed = checks.iter().filter(|check| check.outcome == Outcome::Passed).count();
-        let failed = checks.iter().filter(|check| check.failed()).count();
+        let [passed, failed, not_run] = counts(checks.iter());
         Self {
             version: env!("CARGO_PKG_VERSION"),
             effort: options.effort,
@@ -48,12 +76,39 @@ impl Report {
             only: options.only.clone(),
             passed,
             failed,
-            not_run: checks.len() - passed - failed,
+            not_run,
             seconds,
             environment: Environment::here(),
             instruments: instruments.into_iter().map(|(name, proves)| Instrument { name, proves }).collect(),
             checks,
             census,
+        }
+    }
+
+    /// The sums, by instrument.
+    pub(super) fn totals(&self) -> Summary<'_> {
+        let instruments = groups(&self.checks).into_iter().map(|(name, checks)| {
+            let [passed, failed, not_run] = counts(checks.iter().copied());
+            Total {
+                name,
+                proves: self.instruments.iter().find(|instrument| instrument.name == name).map_or("", |i| i.proves),
+                passed,
+                failed,
+                not_run,
+                worst: worst(checks.iter().copied()),
+                subjects: checks.iter().map(|check| &*check.subject).collect(),
+            }
+        });
+        Summary {
+            version: self.version,
+            effort: self.effort,
+            seed: self.seed,
+            passed: self.passed,
+            failed: self.failed,
+            not_run: self.not_run,
+            seconds: self.seconds,
+            environment: &self.environment,
+            instruments: instruments.collect(),
         }
     }
 
@@ -78,4 +133,13 @@ impl Report {
             Effort::Full => "full",
         }
     }
+}
+
+/// How many passed, failed, and could not run.
+fn counts<'a>(checks: impl Iterator<Item = &'a Check>) -> [usize; 3] {
+    checks.fold([0; 3], |[passed, failed, not_run], check| match check.outcome {
+        Outcome::Passed => [passed + 1, failed, not_run],
+        Outcome::Failed => [passed, failed + 1, not_run],
+        Outcome::NotRun(_) => [passed, failed, not_run + 1],
+    })
 }
