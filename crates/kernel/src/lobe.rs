@@ -65,9 +65,9 @@ pub struct Sample<R: Real> {
     pub event: Event<R>,
 }
 
-/// Up to four numbers of a lobe that depend on wo alone; what they mean is the lobe's own business.
+/// Up to five numbers of a lobe that depend on wo alone; what they mean is the lobe's own business.
 #[derive(Clone, Copy, Debug)]
-pub struct Prepared<R>(pub [R; 4]);
+pub struct Prepared<R>(pub [R; 5]);
 
 /// Which laws of physics a model claims to obey. What it does not claim, it breaks on purpose: instruments measure that too,
 /// so a claim can be stale in either way.
@@ -79,14 +79,11 @@ pub struct Properties {
     pub conserving: bool,
     /// How far above 1 the albedo may lie by the model's own admission, as that of a fitted model does; 0 for most.
     pub excess: f32,
-    /// By how many units `f32` may differ from `f64` on the same numbers; a unit is the larger of eps·f and the largest change
-    /// of f when one input moves by one unit in the last place. 8, unless a fitted function adds roundings of its own.
-    pub units: f32,
 }
 
 impl Properties {
-    /// Reciprocal, conserves energy exactly, and accurate to 8 units.
-    pub const LAWFUL: Self = Self { reciprocal: true, conserving: true, excess: 0.0, units: 8.0 };
+    /// Reciprocal, and conserves energy exactly.
+    pub const LAWFUL: Self = Self { reciprocal: true, conserving: true, excess: 0.0 };
 }
 
 /// A scattering model with its parameters, in the local frame.
@@ -109,7 +106,7 @@ pub trait Lobe<R: Real> {
     /// What depends on wo alone: computed once where a closure is asked several times.
     #[inline(always)]
     fn prepare(&self, _wo: Vec3<R>) -> Prepared<R> {
-        Prepared([R::ZERO; 4])
+        Prepared([R::ZERO; 5])
     }
 
     /// [`Lobe::eval`] with what [`Lobe::prepare`] returned for the same wo.

@@ -83,7 +83,6 @@ impl<R: Real> Surface<R> {
                 reciprocal: all.reciprocal && one.reciprocal,
                 conserving: all.conserving && one.conserving,
                 excess: all.excess.max(one.excess),
-                units: all.units.max(one.units),
             }
         })
     }
