@@ -79,11 +79,14 @@ pub struct Properties {
     pub conserving: bool,
     /// How far above 1 the albedo may lie by the model's own admission, as that of a fitted model does; 0 for most.
     pub excess: f32,
+    /// By how many units `f32` may differ from `f64` on the same numbers; a unit is the larger of eps·f and the largest change
+    /// of f when one input moves by one unit in the last place. 8, unless a fitted function adds roundings of its own.
+    pub units: f32,
 }
 
 impl Properties {
-    /// Reciprocal, and conserves energy exactly.
-    pub const LAWFUL: Self = Self { reciprocal: true, conserving: true, excess: 0.0 };
+    /// Reciprocal, conserves energy exactly, and accurate to 8 units.
+    pub const LAWFUL: Self = Self { reciprocal: true, conserving: true, excess: 0.0, units: 8.0 };
 }
 
 /// A scattering model with its parameters, in the local frame.

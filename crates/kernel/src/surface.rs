@@ -83,6 +83,7 @@ impl<R: Real> Surface<R> {
                 reciprocal: all.reciprocal && one.reciprocal,
                 conserving: all.conserving && one.conserving,
                 excess: all.excess.max(one.excess),
+                units: all.units.max(one.units),
             }
         })
     }

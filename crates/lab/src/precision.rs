@@ -1,17 +1,14 @@
 //! Precision: the `f32` result against the `f64` result of exactly the same numbers.
 //!
-//! **Limit.** The error must not exceed 8 · max(eps · f, s), where s is the largest change of f when one component of one
-//! direction, or one parameter, moves by one unit in the last place of `f32`, by differences in `f64`. A formula that subtracts
-//! what it should not is wrong by hundreds.
+//! **Limit.** The error must not exceed 8 · max(eps · f, s), or as many times as the model admits (`Properties::units`), where
+//! s is the largest change of f when one component of one direction, or one parameter, moves by one unit in the last place
+//! of `f32`, by differences in `f64`. A formula that subtracts what it should not is wrong by hundreds.
 
 use crate::directions::show;
 use crate::finding::{Finding, Run};
 use crate::probe::{Dir, Probe, demote};
 use crate::subject::View;
 use gonio_kernel::Vec3;
-
-/// How many units of max(eps f, s) the error may be.
-pub(crate) const LIMIT: f64 = 8.0;
 
 /// The four numbers in `f32` and in `f64`, and the errors in units of max(eps f, s).
 pub(crate) fn errors(single: View, wo: Dir, wi: Dir) -> [[f64; 4]; 3] {
@@ -26,7 +23,8 @@ pub(crate) fn errors(single: View, wo: Dir, wi: Dir) -> [[f64; 4]; 3] {
 /// The largest error in units of max(eps f, s).
 pub(crate) fn measure(single: View, run: &Run) -> Finding {
     let mut random = run.random();
-    let mut finding = Finding::at_most(LIMIT, "max |f32 − f64| / max(eps·f, largest change by one ulp of an input) ≤");
+    let limit = f64::from(single.claims.properties.units);
+    let mut finding = Finding::at_most(limit, "max |f32 − f64| / max(eps·f, largest change by one ulp of an input) ≤");
     let mut relative = 0.0_f64;
     for _ in 0..run.by_effort(3_000, 30_000, 300_000) {
         let Some((wo, wi)) = single.pair(&mut random) else { continue };

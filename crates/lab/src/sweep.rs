@@ -163,8 +163,9 @@ fn unsound(view: View, wo: Dir, wi: Dir, u: [f64; 3]) -> Option<String> {
 }
 
 fn imprecise(view: View, wo: Dir, wi: Dir) -> Option<String> {
+    let limit = f64::from(view.claims.properties.units);
     let [rough, exact, errors] = precision::errors(view, wo, wi);
-    let fine = errors.into_iter().all(|error| error <= precision::LIMIT);
+    let fine = errors.into_iter().all(|error| error <= limit);
     (!fine).then(|| format!("f32 gives {}, f64 {} at wo {}, wi {}", numbers(rough), numbers(exact), show(wo), show(wi)))
 }
 

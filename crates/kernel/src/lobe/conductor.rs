@@ -157,7 +157,8 @@ impl<R: Real> Lobe<R> for Conductor<R> {
         self.microfacets.domain() & self.fresnel.domain() & fits
     }
 
-    /// What is compensated exceeds all light by 1e-4 at most if isotropic, else by 4 %.
+    /// What is compensated exceeds all light by 1e-4 at most if isotropic, else by 4 %. Kulla & Conty's lobe is a product of two
+    /// losses, each right to 6 units of the last place: where both directions are as steep their errors are the same, and add.
     #[inline(always)]
     fn properties(&self) -> Properties {
         let [alpha_x, alpha_y] = self.microfacets.widths();
@@ -167,7 +168,8 @@ impl<R: Real> Lobe<R> for Conductor<R> {
             _ if isotropic => 1e-4,
             _ => 0.04,
         };
-        Properties { reciprocal: self.compensation != Compensation::Turquin, excess, ..Properties::LAWFUL }
+        let units = if self.compensation == Compensation::KullaConty { 12.0 } else { 8.0 };
+        Properties { reciprocal: self.compensation != Compensation::Turquin, excess, units, ..Properties::LAWFUL }
     }
 }
 
