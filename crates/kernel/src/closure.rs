@@ -102,7 +102,7 @@ impl<'a, R: Real> Unguarded<'a, R> {
                 *p *= scale;
             }
         }
-        let mut prepared = [Prepared([R::ZERO; 4]); MAX_LOBES];
+        let mut prepared = [Prepared([R::ZERO; 5]); MAX_LOBES];
         for (prepared, l) in prepared.iter_mut().zip(surface.lobes()) {
             *prepared = l.lobe.prepare(wo);
         }

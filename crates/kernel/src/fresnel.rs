@@ -2,7 +2,6 @@
 //!
 //! Cosines are those between the direction and the (micro)normal, on wo's side. Results lie in [0, 1].
 
-use crate::energy;
 use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
 
@@ -200,19 +199,6 @@ impl<R: Real> Fresnel<R> {
                 Rgb::new(f82(cos_o, f0.r, tint.r), f82(cos_o, f0.g, tint.g), f82(cos_o, f0.b, tint.b))
             }
             Self::Dielectric { eta } => Rgb::splat(dielectric(cos_o, eta)),
-        }
-    }
-
-    /// The mean reflectance of each channel over all directions, weighted by the cosine: 2∫F(μ)μ dμ. Of conductors and
-    /// dielectrics by a rule of four points; see [`energy::conductor_avg`].
-    #[inline(always)]
-    pub fn average(&self) -> Rgb<R> {
-        let zip = |a: Rgb<R>, b: Rgb<R>, f: fn(R, R) -> R| Rgb::new(f(a.r, b.r), f(a.g, b.g), f(a.b, b.b));
-        match *self {
-            Self::Conductor { eta, k } => zip(eta, k, energy::conductor_avg),
-            Self::Schlick { f0 } => f0.map(energy::schlick_avg),
-            Self::F82 { f0, tint } => zip(f0, tint, |f0, tint| energy::f82_avg(f0, f82_bend(f0, tint)).max(R::ZERO)),
-            Self::Dielectric { eta } => Rgb::splat(energy::cosine_mean(|cos| dielectric(cos, eta))),
         }
     }
 

@@ -65,9 +65,9 @@ pub struct Sample<R: Real> {
     pub event: Event<R>,
 }
 
-/// Up to four numbers of a lobe that depend on wo alone; what they mean is the lobe's own business.
+/// Up to five numbers of a lobe that depend on wo alone; what they mean is the lobe's own business.
 #[derive(Clone, Copy, Debug)]
-pub struct Prepared<R>(pub [R; 4]);
+pub struct Prepared<R>(pub [R; 5]);
 
 /// Which laws of physics a model claims to obey. What it does not claim, it breaks on purpose: instruments measure that too,
 /// so a claim can be stale in either way.
@@ -109,7 +109,7 @@ pub trait Lobe<R: Real> {
     /// What depends on wo alone: computed once where a closure is asked several times.
     #[inline(always)]
     fn prepare(&self, _wo: Vec3<R>) -> Prepared<R> {
-        Prepared([R::ZERO; 4])
+        Prepared([R::ZERO; 5])
     }
 
     /// [`Lobe::eval`] with what [`Lobe::prepare`] returned for the same wo.

@@ -298,19 +298,33 @@ pub(crate) fn tasks() -> Vec<Task<'static>> {
 }
 
 /// Compensations that are wrong on purpose.
-fn walk_faults() -> [(&'static str, walk::Model); 4] {
+fn walk_faults() -> [(&'static str, walk::Model); 5] {
+    use gonio_kernel::Rgb;
+    use gonio_kernel::energy::multiple_fresnel;
     use walk::KERNEL;
     [
         (
             "E_avg off by 2 %",
             walk::Model { missing_avg: |alpha| 1.0 - 1.02 * (1.0 - (KERNEL.missing_avg)(alpha)), ..KERNEL },
         ),
-        ("multiple scattering coloured once only", walk::Model { multiple: |f_avg, _, _, _| f_avg, ..KERNEL }),
+        ("E off by 2 %", walk::Model { missing: |cos, alpha| 1.02 * (KERNEL.missing)(cos, alpha) - 0.02, ..KERNEL }),
+        ("multiple scattering coloured once only", walk::Model { multiple: |f, _, _, _| f, ..KERNEL }),
         (
             "scattered again as often as at first",
-            walk::Model { multiple: |f_avg, _, _, mean| gonio_kernel::energy::multiple_fresnel(f_avg, mean), ..KERNEL },
+            walk::Model { multiple: |f, _, _, mean| multiple_fresnel(f, mean), ..KERNEL },
         ),
-        ("E off by 2 %", walk::Model { missing: |cos, alpha| 1.02 * (KERNEL.missing)(cos, alpha) - 0.02, ..KERNEL }),
+        (
+            "facets met as under uniform light",
+            walk::Model {
+                // 2∫F(μ)μ dμ, by midpoints.
+                facets: |fresnel, _, _| {
+                    let at = |i: i32| (f64::from(i) + 0.5) / 100.0;
+                    let mean = |sum: Rgb<f64>, i: i32| sum + fresnel.reflectance(at(i)) * (0.02 * at(i));
+                    (0..100).fold(Rgb::zero(), mean)
+                },
+                ..KERNEL
+            },
+        ),
     ]
 }
 

@@ -106,10 +106,12 @@ pub(crate) fn kulla_conty(p: &[f64], wo: Dir, wi: Dir) -> Worth {
     let missing = energy::Missing::of(alpha);
     let (lost_o, lost_i, lost) = (missing.at(wo.z), missing.at(wi.z), energy::missing_avg(alpha));
     let wide = lost_o * lost_i / (PI * lost);
-    let again = (0.73 * lost_o * lost_i / lost).min(0.6 * alpha);
+    let again = (0.68 * lost_o * lost_i / lost).min(0.545 * alpha);
+    let cos = ((0.77 * wo.z + 0.56 * alpha) * (0.77 * wi.z + 0.56 * alpha)).sqrt().min(1.0);
     let f_cos = [0, 1, 2].map(|c| {
-        let f_avg = 20.0 / 21.0 * p[2 + c] + 1.0 / 21.0;
-        single.f_cos[c] + f_avg * f_avg * (1.0 - again) / (1.0 - f_avg * again) * wide * wi.z
+        let fresnel = |cos: f64| p[2 + c] + (1.0 - p[2 + c]) * (1.0 - cos).powi(5);
+        let f = 0.5 * (fresnel(cos) + fresnel(0.43 * cos));
+        single.f_cos[c] + f * f * (1.0 - again) / (1.0 - f * again) * wide * wi.z
     });
     let multiple = 1.0 / (2.0 * PI * (wi.z + 4.0 * alpha) * (1.0 + 0.25 / alpha).ln());
     Worth { f_cos, pdf: (1.0 - lost_o) * single.pdf + lost_o * multiple }

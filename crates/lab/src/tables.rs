@@ -8,8 +8,8 @@ mod ggx;
 
 pub(crate) use ggx::missing;
 
-use gonio_kernel::energy::{ALPHA, MEAN, Table, X};
-use gonio_kernel::math::ln;
+use gonio_kernel::energy::{MEAN, Table, V, W};
+use gonio_kernel::math::{ln, ln_1p};
 use std::fmt::Write;
 
 /// The text of `energy/tables.rs`.
@@ -50,31 +50,32 @@ fn rounded(x: f64) -> f64 {
 
 /// Fits both parts.
 fn make() -> Table {
-    let mut table = Table { missing: [[0.0; ALPHA]; X], missing_avg: [0.0; MEAN] };
-    // The fit of ln P wants the absolute error of 1 − E = B·P least, so rows are weighted with it, and a little with 1, because
-    // small losses should be right too; a breath of regularisation keeps coefficients small where no μ ≤ 1
-    // lies (large x at large α).
+    let mut table = Table { missing: [[0.0; W]; V], missing_avg: [0.0; MEAN] };
+    // The fit of ln P wants the absolute error of 1 − E least, so rows are weighted with it, and a little with 1, because small
+    // losses should be right too; a breath of regularisation keeps coefficients small where no μ ≤ 1 lies.
     let (mut rows, mut right) = (Vec::new(), Vec::new());
     for (mu, alpha) in nodes() {
-        let x = mu / (mu + 4.0 * alpha);
-        let base = 4.0 * x * (alpha / (mu + alpha)) * (alpha / (mu + 4.0 * alpha));
-        let (tx, ta) = (fit::chebyshev(2.0 * x.sqrt().sqrt() - 1.0, X), fit::chebyshev(2.0 * alpha - 1.0, ALPHA));
+        let v = (mu * (1.0 + 12.0 * alpha) / (mu + 12.0 * alpha)).sqrt().sqrt();
+        let (tv, tw) = (fit::chebyshev(2.0 * v - 1.0, V), fit::chebyshev(2.0 * w_of(alpha) - 1.0, W));
+        let far = mu + 4.0 * alpha;
+        let factor = 4.0 * (mu / far) * (alpha / far) * (alpha / (mu + alpha)) * (1.0 + 12.0 * alpha * alpha);
         let missing = missing(mu, alpha);
         let weight = missing + 1e-4;
-        rows.push(tx.iter().flat_map(|tx| ta.iter().map(move |ta| weight * tx * ta)).collect());
-        right.push(weight * ln(missing / base));
+        rows.push(tv.iter().flat_map(|tv| tw.iter().map(move |tw| weight * tv * tw)).collect());
+        right.push(weight * ln(missing / factor));
     }
     let solution = fit::least_squares(rows, right, 1e-6);
-    for (row, fitted) in table.missing.iter_mut().zip(solution.chunks(ALPHA)) {
+    for (row, fitted) in table.missing.iter_mut().zip(solution.chunks(W)) {
         for (c, fitted) in row.iter_mut().zip(fitted) {
             *c = rounded(*fitted);
         }
     }
     // The mean is that of the approximation. Every row counts relative to its value.
     let (mut rows, mut right) = (Vec::new(), Vec::new());
-    for alpha in fit::nodes(4 * MEAN).chain([0.0, 1.0]).map(width_of) {
-        let (t, mean) = (fit::chebyshev(Table::mean_argument(alpha), MEAN), mean(&table, alpha));
-        rows.push(t.iter().map(|t| alpha * alpha * t / mean).collect());
+    let widths = fit::nodes(2 * MEAN).chain([0.0, 1.0]).map(width_of);
+    for alpha in widths.chain(fit::nodes(2 * MEAN)) {
+        let scale = alpha * alpha * ln_1p(0.218 / alpha) / mean(&table, alpha);
+        rows.push(fit::chebyshev(2.0 * alpha.sqrt() - 1.0, MEAN).into_iter().map(|t| scale * t).collect());
         right.push(1.0);
     }
     for (c, fitted) in table.missing_avg.iter_mut().zip(fit::least_squares(rows, right, 0.0)) {
@@ -83,25 +84,31 @@ fn make() -> Table {
     table
 }
 
-/// Where the fit is made: Chebyshev nodes in α and x^¼, as far as μ ≤ 1 reaches, and the edges.
+/// w of α in [0, 1].
+fn w_of(alpha: f64) -> f64 {
+    5.0 * alpha / (1.0 + 4.0 * alpha)
+}
+
+/// Where the fit is made: Chebyshev nodes of α and v, as far as quadrature reaches, and the edges.
 fn nodes() -> Vec<(f64, f64)> {
     let mut nodes = Vec::new();
-    for alpha in fit::nodes(22).chain([1.0, 1e-3, 1e-5]) {
-        let reach = (1.0 / (1.0 + 4.0 * alpha)).sqrt().sqrt();
-        for y in fit::nodes(30).map(|y| reach * y) {
-            let x = y * y * y * y;
-            let mu = 4.0 * alpha * x / (1.0 - x);
+    for alpha in fit::nodes(24).chain([1.0, 0.03, 3e-3, 1e-3, 1e-5]) {
+        for v in fit::nodes(30).chain([1.0]) {
+            let mu = mu_of(v, alpha);
             // Beyond this the missing light is below 1e-9, and quadrature has nothing to add.
-            if mu <= 1.0 && mu < 3e4 * alpha {
+            if mu < 3e4 * alpha {
                 nodes.push((mu, alpha));
             }
-        }
-        if alpha > 1e-4 {
-            nodes.push((1.0, alpha));
         }
         nodes.extend([1e-9, 1e-7, 1e-5, 1e-3].map(|t| (t * alpha, alpha)));
     }
     nodes
+}
+
+/// μ of v: v⁴ = μ(1 + 12α)/(μ + 12α).
+fn mu_of(v: f64, alpha: f64) -> f64 {
+    let part = v * v * v * v / (1.0 + 12.0 * alpha);
+    (12.0 * alpha * part / (1.0 - part)).min(1.0)
 }
 
 /// 2∫(1 − E) μ dμ of the approximation.
@@ -110,17 +117,15 @@ fn mean(table: &Table, alpha: f64) -> f64 {
     2.0 * ggx::double_exponential(160).iter().map(|n| n.weight * n.x * missing.at(n.x)).sum::<f64>()
 }
 
-/// The largest error of E between the nodes: another grid, in α and μ/α.
+/// The largest error of E between the nodes: another grid, in α, v and μ.
 fn largest_error(table: &Table) -> f64 {
     let mut largest = 0.0_f64;
     let widths = (0..24).map(|i| (f64::from(i) + 0.5) / 24.0).chain([1e-8, 1e-6, 1e-4, 1e-3, 4e-3, 0.01, 0.03, 1.0]);
     for alpha in widths {
         let approximation = table.missing(alpha);
         for i in 0..=36 {
-            // From 1e-9 to 1 in μ, evenly in x^¼.
-            let y = (f64::from(i) + 0.3) / 37.0 * (1.0 / (1.0 + 4.0 * alpha)).sqrt().sqrt();
-            let x = y * y * y * y;
-            for mu in [4.0 * alpha * x / (1.0 - x), f64::from(i).max(0.5) / 36.0] {
+            // Evenly in v, and in μ.
+            for mu in [mu_of((f64::from(i) + 0.3) / 37.0, alpha), f64::from(i).max(0.5) / 36.0] {
                 if mu < 1e4 * alpha {
                     largest = largest.max((approximation.at(mu) - missing(mu, alpha)).abs());
                 } else {
@@ -134,7 +139,8 @@ fn largest_error(table: &Table) -> f64 {
 }
 
 fn largest_error_of_mean(table: &Table) -> f64 {
-    let widths = (0..=100).map(|i| width_of(f64::from(i) / 100.0));
+    let parts = (0..=100).map(|i| f64::from(i) / 100.0);
+    let widths = parts.clone().map(width_of).chain(parts.skip(1));
     widths.map(|alpha| (table.missing_avg(alpha) / mean(table, alpha) - 1.0).abs()).fold(0.0, f64::max)
 }
 

@@ -71,14 +71,12 @@ macro_rules! functions {
             energy::missing_avg(alpha: R) -> R;
             energy::albedo(cos: R, alpha: R) -> R;
             energy::albedo_avg(alpha: R) -> R;
-            energy::multiple_fresnel(f_avg: R, again: R) -> R;
+            energy::multiple_fresnel(f: R, again: R) -> R;
             energy::scattered_again(alpha: R, missing_o: R, missing_i: R, missing_avg: R) -> R;
             energy::kulla_conty(missing_o: R, missing_i: R, missing_avg: R, f_ms: R) -> R;
             energy::effective_alpha(alpha_x: R, alpha_y: R) -> R;
             energy::turquin(f0: R, missing_o: R) -> R;
-            energy::schlick_avg(f0: R) -> R;
-            energy::f82_avg(f0: R, a: R) -> R;
-            energy::conductor_avg(eta: R, k: R) -> R;
+            energy::facet_cosines(alpha: R, cos_o: R, cos_i: R) -> [R; 2];
             frame::tangents(z: Vec3<R>) -> (Vec3<R>, Vec3<R>);
             frame::cos_theta(w: Vec3<R>) -> R;
             frame::sin2_theta(w: Vec3<R>) -> R;

@@ -13,13 +13,13 @@
 //! isotropic; for α_x ≠ α_y a white surface may return up to 4 % too much ([`effective_alpha`]).
 //!
 //! Cost of a value: two divisions and two roots, and for a conductor's Fresnel one division and six roots more; its density
-//! one division. Kulla & Conty's lobe: about six divisions and 200 multiplications. What depends on wo alone (s(wo), the
-//! bound, 1 − E(wo)) is prepared once per closure.
+//! one division. Kulla & Conty's lobe: Fresnel's reflectance at two more cosines, about eight divisions and 300 multiplications.
+//! What depends on wo alone (s(wo), the bound, 1 − E(wo)) or on the material alone (1 − E_avg) is prepared once per closure.
 
 use super::{Event, Lobe, Prepared, Properties, Sample, Value};
 use crate::energy::{
-    Compensation, Missing, effective_alpha, kulla_conty, missing_avg, multiple_fresnel, pdf_multiple, sample_multiple,
-    scattered_again, turquin,
+    Compensation, Missing, effective_alpha, facet_cosines, kulla_conty, missing_avg, multiple_fresnel, pdf_multiple,
+    sample_multiple, scattered_again, turquin,
 };
 use crate::frame::both_above;
 use crate::fresnel::Fresnel;
@@ -71,14 +71,15 @@ impl<R: Real> Conductor<R> {
         effective_alpha(alpha_x, alpha_y)
     }
 
-    /// Kulla & Conty's lobe beside the single scattering, with 1 − E(wo) given.
+    /// Kulla & Conty's lobe beside the single scattering, with 1 − E(wo) and 1 − E_avg given; cosines in (0, 1].
     #[inline(always)]
-    fn with_multiple(&self, single: Value<R>, missing_o: R, cos_i: R) -> Value<R> {
+    fn with_multiple(&self, single: Value<R>, [missing_o, mean]: [R; 2], cos_o: R, cos_i: R) -> Value<R> {
         let alpha = self.width();
-        let (missing_i, mean) = (Missing::of(alpha).at(cos_i), missing_avg(alpha));
+        let missing_i = Missing::of(alpha).at(cos_i);
         let again = scattered_again(alpha, missing_o, missing_i, mean);
-        let multiple =
-            self.fresnel.average().map(|f| kulla_conty(missing_o, missing_i, mean, multiple_fresnel(f, again)));
+        let [steep, flat] = facet_cosines(alpha, cos_o, cos_i).map(|cos| self.fresnel.reflectance(cos));
+        let f = (steep + flat) * R::lit(0.5);
+        let multiple = f.map(|f| kulla_conty(missing_o, missing_i, mean, multiple_fresnel(f, again)));
         Value {
             f_cos: single.f_cos + multiple * cos_i,
             pdf: (R::ONE - missing_o).mul_add(single.pdf, missing_o * pdf_multiple(alpha, cos_i)),
@@ -86,22 +87,32 @@ impl<R: Real> Conductor<R> {
     }
 }
 
+/// The cosine of a direction above the surface, in (0, 1].
+#[inline(always)]
+fn cosine<R: Real>(w: Vec3<R>) -> R {
+    w.z.max(R::lit(1e-38)).min(R::ONE)
+}
+
 impl<R: Real> Lobe<R> for Conductor<R> {
-    /// s(wo), the reach of visible normals, and 1 − E(wo) if it is asked for.
+    /// s(wo), the reach of visible normals, and, if they are asked for, 1 − E(wo) and 1 − E_avg.
     #[inline(always)]
     fn prepare(&self, wo: Vec3<R>) -> Prepared<R> {
-        let missing = match self.compensation {
+        let missing_o = match self.compensation {
             Compensation::None => R::ZERO,
-            _ => Missing::of(self.width()).at(wo.z.max(R::lit(1e-38)).min(R::ONE)),
+            _ => Missing::of(self.width()).at(cosine(wo)),
+        };
+        let mean = match self.compensation {
+            Compensation::KullaConty => missing_avg(self.width()),
+            _ => R::ZERO,
         };
         let s_o = self.microfacets.smith_length(wo);
         let Reach { depth, inverse } = self.microfacets.reach(wo, s_o);
-        Prepared([s_o, depth, inverse, missing])
+        Prepared([s_o, depth, inverse, missing_o, mean])
     }
 
     #[inline(always)]
     fn eval_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
-        let Prepared([s_o, depth, inverse, missing_o]) = *prepared;
+        let Prepared([s_o, depth, inverse, missing_o, mean]) = *prepared;
         let h = wo + wi;
         let h2 = h.length2();
         let s_i = self.microfacets.smith_length(wi);
@@ -114,7 +125,7 @@ impl<R: Real> Lobe<R> for Conductor<R> {
         let single = Value { f_cos, pdf };
         let value = match self.compensation {
             Compensation::None => single,
-            Compensation::KullaConty => self.with_multiple(single, missing_o, wi.z.max(R::lit(1e-38)).min(R::ONE)),
+            Compensation::KullaConty => self.with_multiple(single, [missing_o, mean], cosine(wo), cosine(wi)),
             Compensation::Turquin => {
                 let f0 = self.fresnel.reflectance(R::ONE);
                 Value { f_cos: f_cos * f0.map(|f0| turquin(f0, missing_o)), pdf }
@@ -125,7 +136,7 @@ impl<R: Real> Lobe<R> for Conductor<R> {
 
     #[inline(always)]
     fn sample_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
-        let Prepared([s_o, depth, inverse, missing_o]) = *prepared;
+        let Prepared([s_o, depth, inverse, missing_o, _]) = *prepared;
         let reach = Reach { depth, inverse };
         let mut wi = reflect(wo, self.microfacets.sample_visible(wo, s_o, reach, [u[1], u[2]]));
         if self.compensation == Compensation::KullaConty {
@@ -146,9 +157,8 @@ impl<R: Real> Lobe<R> for Conductor<R> {
         self.microfacets.domain() & self.fresnel.domain() & fits
     }
 
-    /// What is compensated exceeds all light by 1e-4 at most if isotropic, else by 4 %; and the polynomial of its losses adds
-    /// to their rounding, which shows far from the mirror direction, where they are all there is; 1 − E in Turquin's denominator
-    /// triples them at α = 1.
+    /// What is compensated exceeds all light by 1e-4 at most if isotropic, else by 4 %. Kulla & Conty's lobe is a product of two
+    /// losses, each right to 6 units of the last place: where both directions are as steep their errors are the same, and add.
     #[inline(always)]
     fn properties(&self) -> Properties {
         let [alpha_x, alpha_y] = self.microfacets.widths();
@@ -158,11 +168,7 @@ impl<R: Real> Lobe<R> for Conductor<R> {
             _ if isotropic => 1e-4,
             _ => 0.04,
         };
-        let units = match self.compensation {
-            Compensation::None => 8.0,
-            Compensation::KullaConty => 32.0,
-            Compensation::Turquin => 48.0,
-        };
+        let units = if self.compensation == Compensation::KullaConty { 12.0 } else { 8.0 };
         Properties { reciprocal: self.compensation != Compensation::Turquin, excess, units, ..Properties::LAWFUL }
     }
 }

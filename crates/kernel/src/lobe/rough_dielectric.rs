@@ -63,12 +63,12 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
     fn prepare(&self, wo: Vec3<R>) -> Prepared<R> {
         let s_o = self.microfacets.smith_length(wo);
         let Reach { depth, inverse } = Reach::whole(turned(wo, wo), s_o);
-        Prepared([s_o, depth, inverse, relative_index(self.eta, wo)])
+        Prepared([s_o, depth, inverse, relative_index(self.eta, wo), R::ZERO])
     }
 
     #[inline]
     fn eval_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
-        let Prepared([s_o, depth, inverse, eta]) = *prepared;
+        let Prepared([s_o, depth, inverse, eta, _]) = *prepared;
         let reach = Reach { depth, inverse };
         let (wi, wo) = (turned(wo, wi), turned(wo, wo));
         let through = wi.z.lt(R::ZERO);
@@ -112,7 +112,7 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
 
     #[inline]
     fn sample_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
-        let Prepared([s_o, depth, inverse, eta]) = *prepared;
+        let Prepared([s_o, depth, inverse, eta, _]) = *prepared;
         let reach = Reach { depth, inverse };
         let up = turned(wo, wo);
         let m = self.microfacets.sample_visible(up, s_o, reach, [u[1], u[2]]).normalize_or(Vec3::unit_z());
