@@ -107,13 +107,16 @@ impl<R: Real> ConductorAngle<R> {
     /// where nothing else could say how much is reflected.
     #[inline(always)]
     fn fraction(self, eta: R, k: R) -> (R, R) {
-        // Of the material alone; with cos²θ, t does not cancel for η near 1. At the critical angle of a lossless index s is 0,
-        // and so would be both parts of the fraction.
-        let constant = (-k).mul_add(k, (eta - R::ONE) * (eta + R::ONE));
+        // Of the material alone: η² − k² − 1, with which t does not cancel for η near 1; and where it is near −1, what rounding
+        // it has lost, so that t does not cancel for small η either.
+        let constant = (-k).mul_add(k, eta.mul_add(eta, -R::ONE));
+        let lost = eta.mul_add(eta, (-k).mul_add(k, -(constant + R::ONE)));
+        let lost = lost.or_zero(constant.gt(R::lit(-2.0)) & constant.lt(R::lit(-0.5)));
         let ab = R::lit(2.0) * eta * k;
+        // At the critical angle of a lossless index s is 0, and so would be both parts of the fraction.
         let ab2 = (ab * ab).max(R::lit(1e-32));
 
-        let t = constant + self.cos2;
+        let t = constant + self.cos2 + lost;
         let a2b2 = t.mul_add(t, ab2).sqrt();
         let s2 = a2b2 + t.abs();
         let s = s2.sqrt();

@@ -129,8 +129,8 @@ impl<R: Real> Reach<R> {
 pub fn vis_cos_i<R: Real>(masking: Masking, cos_o: R, s_o: R, cos_i: R, s_i: R) -> R {
     match masking {
         Masking::HeightCorrelated => {
-            // The ratio stays finite where the products of denormal cosines and widths would underflow.
-            let lift = R::lit(1e20);
+            // The ratio stays finite where the products of denormal cosines and widths would underflow. 2⁶⁶, which rounds nothing.
+            let lift = R::lit(73_786_976_294_838_206_464.0);
             let (cos_o, cos_i) = (cos_o * lift, cos_i * lift);
             R::lit(0.5) * cos_i / cos_i.mul_add(s_o, cos_o * s_i)
         }

@@ -22,12 +22,12 @@ const LEAST_EXPECTED: f64 = 25.0;
 /// sampler rounds several times to that lattice, each by up to half a step, and below this width that is seen.
 const LEAST_WIDTH: f64 = 32.0 / 16_777_216.0;
 
-/// How many samples a run takes per test: at full effort as many as find the stated fault.
+/// How many samples a run takes per test: at full effort as many as find twice the planted fault, in each of four views.
 fn samples(run: &Run) -> u64 {
     match run.effort {
         Effort::Quick => 250_000,
         Effort::Standard => 3_000_000,
-        Effort::Full => samples_for(FAULT_SIZE, run.level, DEGREES, POWER),
+        Effort::Full => samples_for(2.0 * FAULT_SIZE, run.level, DEGREES, POWER),
     }
 }
 

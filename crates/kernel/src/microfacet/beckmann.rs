@@ -48,14 +48,11 @@ impl<R: Real> Beckmann<R> {
         let (h, h_length2) = lengthened(h, h_length2);
         // Where h lies that close to the horizon, D is 0 by 1e20 in the exponent; and all quotients stay finite.
         let z = h.z.max(R::lit(1e-16));
-        let a = self.alpha_x * self.alpha_y;
-        let inverse = (a * z).recip();
-        let x = h.x * self.alpha_y * inverse;
-        let y = h.y * self.alpha_x * inverse;
-        let secant2 = h_length2 * (a * inverse).sqr();
+        let (over_a, over_z2) = ((self.alpha_x * self.alpha_y).recip(), (z * z).recip());
+        let (x, y) = (h.x * self.alpha_y * over_a, h.y * self.alpha_x * over_a);
         // The root first, because secant⁴ may overflow where the exponential is 0.
-        let root = exp_negative(R::lit(-0.5) * x.mul_add(x, y * y)) * secant2;
-        flushed_square(root, inverse * z * R::lit(FRAC_1_PI))
+        let root = exp_negative(R::lit(-0.5) * x.mul_add(x, y * y) * over_z2) * (h_length2 * over_z2);
+        flushed_square(root, over_a * R::lit(FRAC_1_PI))
     }
 
     /// s(w) = |w_z|(1 + 2Λ(w)): |w_z| seen from above, t/√π in the horizon.

@@ -33,19 +33,18 @@ impl<R: Real> Ggx<R> {
     /// D of the normal along h (any length, h.z ≥ 0), with |h|² given \[1/sr\].
     #[inline(always)]
     pub fn d(&self, h: Vec3<R>, h_length2: R) -> R {
-        let (h, h_length2) = lengthened(h, h_length2);
+        let (h, _) = lengthened(h, h_length2);
         // With a = α_x α_y: D = a³|h|⁴/(π (α_y²h_x² + α_x²h_y² + a²h_z²)²), one division instead of four. One factor α is
         // lifted by about 1/α_min, so that the squares of the least widths do not underflow; a power of two rounds nothing.
         let lift = R::lit(134_217_728.0); // 2²⁷
         let (alpha_x, alpha_y) = (self.alpha_x * lift, self.alpha_y * lift);
         let a = alpha_x * self.alpha_y;
-        let x = alpha_y * h.x;
-        let y = alpha_x * h.y;
-        let z = a * h.z;
-        let q = x.mul_add(x, y.mul_add(y, z * z));
-        let r = a * lift * h_length2 / q;
-        // r²a first: r alone may be as large as 1/a.
-        r * (r * (self.alpha_x * self.alpha_y)) * R::lit(core::f64::consts::FRAC_1_PI)
+        // The same squares above and below, so that their roundings cancel where one of them dominates.
+        let (x2, y2, z2) = (h.x * h.x, h.y * h.y, h.z * h.z);
+        let q = x2.mul_add(alpha_y * alpha_y, y2.mul_add(alpha_x * alpha_x, z2 * (a * a)));
+        let r = a * lift * (x2 + y2 + z2) / q;
+        // r·a first: r alone may be as large as 1/a.
+        r * (r * (self.alpha_x * self.alpha_y * R::lit(core::f64::consts::FRAC_1_PI)))
     }
 
     /// s(w) = √(w_z² + α_x²w_x² + α_y²w_y²): the length of w in the space where the surface is a hemisphere.
