@@ -6,6 +6,10 @@
 //! against it. Any input gives an orthonormal frame: a normal that is zero or not finite becomes `z`, a tangent that is
 //! parallel to the normal is ignored.
 
+mod tilt;
+
+pub use tilt::{GRAZING, facing, on_its_side};
+
 use crate::real::Real;
 use crate::vec3::Vec3;
 
