@@ -11,8 +11,8 @@
 //! Tracing").
 //!
 //! **The viewer** ([`facing`]). A normal that faces away from the viewer is turned towards them until they graze it.
-//! pbrt-v4 shades such a point as the back of the tilted surface, which lets light through; Mitsuba's `normalmap` turns the
-//! frame over or leaves the point black; Cycles, Iray and MoonRay bend every normal until the viewer's mirror image rises
+//! pbrt-v4 shades such a point as the back of the tilted surface, which lets light through; Mitsuba's `normalmap` tilts it to
+//! the other side, or leaves it black; Cycles, Iray and MoonRay bend every normal until the viewer's mirror image rises
 //! above the surface (Keller et al. 2017, "The Iray Light Transport Simulation and Rendering System", A.3). Ours changes no
 //! normal that can be seen, leaves no black Lambert, and has no seam: at the border of what can be seen it is the given normal.
 //! Its price: behind that border the frame depends on wo, so f(wo, wi) = f(wi, wo) does not hold there, and a mirror stays as
