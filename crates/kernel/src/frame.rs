@@ -48,6 +48,13 @@ impl<R: Real> Frame<R> {
         Self { x, y: z.cross(x), z }
     }
 
+    /// `yes` where `mask`, `no` elsewhere.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+        let each = |yes, no| Vec3::select(mask, yes, no);
+        Self { x: each(yes.x, no.x), y: each(yes.y, no.y), z: each(yes.z, no.z) }
+    }
+
     /// World to local.
     #[inline(always)]
     pub fn to_local(&self, v: Vec3<R>) -> Vec3<R> {

@@ -34,12 +34,7 @@ impl<R: Real> Frame<R> {
     pub fn tilted(&self, n: Vec3<R>) -> Self {
         let n = n.normalize_or(Vec3::unit_z());
         let tilts = n.z.gt(R::ZERO) & (n.x.abs() + n.y.abs()).gt(R::ZERO);
-        let to = Self::from_normal_tangent(self.to_world(n), self.x);
-        Self {
-            x: Vec3::select(tilts, to.x, self.x),
-            y: Vec3::select(tilts, to.y, self.y),
-            z: Vec3::select(tilts, to.z, self.z),
-        }
+        Self::select(tilts, Self::from_normal_tangent(self.to_world(n), self.x), *self)
     }
 }
 
