@@ -8,7 +8,7 @@ Mitsuba's `normalmap` drops light on the wrong side of the surface as we do. In 
 avoids them. Its shadowing of light that grazes a tilted normal (`use_shadowing_function`) is switched off. A normal that
 faces away from the viewer it tilts to the other side, or leaves it black (`flip_invalid_normals`), where we turn it until
 it faces the viewer: here every normal does. Its green channel points along n x dp/du where the texture is mirrored, ours along
-dp/dv: here they agree.
+dp/dv: here they agree. (Its roughconductor masks separably, and so does normal_map.toml.)
 
     pip install mitsuba==3.9.1 numpy
     DRJIT_LIBLLVM_PATH=<libLLVM 19> python normal_map.py
