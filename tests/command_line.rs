@@ -1,11 +1,12 @@
 //! The program from outside: every exit code, the words of each refusal, and files that appear whole or not at all.
 
+mod accel;
+mod bsdf;
+
 use assert_cmd::Command;
 use serde_json::Value;
 use std::fs;
-use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
 use tempfile::TempDir;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_gonio");
@@ -275,126 +276,6 @@ fn an_obj_file_alone_renders_with_warnings_and_to_standard_output() {
 }
 
 #[test]
-fn what_is_sampled_evaluates_to_the_same_digits() {
-    let folder = folder();
-    for precision in ["f32", "f64", "lanes"] {
-        let sampled = gonio(
-            folder.path(),
-            &format!("bsdf sample metal.toml --wo 0.6,0,0.8 -n 1000 --seed 3 --precision {precision}"),
-        )
-        .succeeds();
-        assert!(sampled.starts_with("wi_x,wi_y,wi_z,f_cos_r,f_cos_g,f_cos_b,pdf,weight_r,weight_g,weight_b,event\n"));
-        let sampled: Vec<_> = rows(&sampled).into_iter().filter(|row| row[10] != "failed").collect();
-        assert!(sampled.len() > 500);
-        let table: String = sampled.iter().map(|row| format!("0.6,0,0.8,{}\n", row[..3].join(","))).collect();
-        fs::write(folder.path().join("pairs.csv"), table).unwrap();
-        gonio(
-            folder.path(),
-            &format!("bsdf eval metal.toml --directions pairs.csv -o out.csv --precision {precision}"),
-        )
-        .succeeds();
-        let out = fs::read_to_string(folder.path().join("out.csv")).unwrap();
-        assert_eq!(out.lines().next(), Some("f_cos_r,f_cos_g,f_cos_b,pdf"));
-        for (sampled, evaluated) in sampled.iter().zip(rows(&out)) {
-            assert_eq!(sampled[3..7], evaluated[..], "{precision}");
-        }
-    }
-}
-
-#[test]
-fn eight_lanes_print_the_same_bytes_as_the_scalar() {
-    let folder = folder();
-    for material in ["white.toml", "metal.toml", "mirror.toml"] {
-        let sample = |precision| {
-            gonio(folder.path(), &format!("bsdf sample {material} --wo -0.48,0.36,0.8 -n 1003 --precision {precision}"))
-                .succeeds()
-        };
-        assert_eq!(sample("f32"), sample("lanes"), "{material}");
-    }
-}
-
-#[test]
-fn directions_outside_of_the_domain_are_worth_exactly_nothing() {
-    let folder = folder();
-    let table = "0,0,1,0,0,2\nnan,0,1,0,0,1\n0,0,1,inf,0,1\n0,0,0,0,0,1\n0,0,1,0.6,0,-0.8\n0,0,1,0,0,1\n";
-    fs::write(folder.path().join("odd.csv"), table).unwrap();
-    let out = gonio(folder.path(), "bsdf eval white.toml --directions odd.csv --precision f64").succeeds();
-    let rows = rows(&out);
-    assert!(rows[..5].iter().all(|row| row.iter().all(|cell| *cell == "0.0")), "{out}");
-    let value: f64 = rows[5][0].parse().unwrap();
-    assert!((value - std::f64::consts::FRAC_1_PI).abs() < 1e-15);
-    let run = gonio(folder.path(), "bsdf sample white.toml --wo 0,0,3 -n 2");
-    assert!(run.err.contains("warning: --wo is not a unit vector"), "{}", run.err);
-    assert!(run.succeeds().lines().skip(1).all(|line| line == "0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,failed"));
-}
-
-#[test]
-fn a_longer_table_of_samples_begins_with_the_shorter_one() {
-    let folder = folder();
-    let sample =
-        |n, seed| gonio(folder.path(), &format!("bsdf sample metal.toml --wo 0,0,1 -n {n} --seed {seed}")).succeeds();
-    assert!(sample("5000", 1).starts_with(&sample("13", 1)));
-    assert_ne!(sample("13", 1), sample("13", 2));
-    let mirror = gonio(folder.path(), "bsdf sample mirror.toml --wo 0.6,0,0.8 -n 1").succeeds();
-    assert_eq!(mirror.lines().nth(1), Some("-0.6,-0.0,0.8,0.75,0.5,0.25,1.0,0.75,0.5,0.25,mirror"));
-}
-
-#[test]
-fn albedo_is_json_with_standard_errors() {
-    let folder = folder();
-    let text = gonio(folder.path(), "bsdf albedo white.toml --cos 0.1,1 --samples 1e4 --json").succeeds();
-    assert_eq!(text.lines().count(), 1);
-    let result: Value = serde_json::from_str(&text).unwrap();
-    let rows = result["results"].as_array().unwrap();
-    assert_eq!(rows.len(), 2);
-    for row in rows {
-        for channel in 0..3 {
-            // A cosine sample of Lambert's law weighs its albedo, up to rounding.
-            assert!((row["R"]["mean"][channel].as_f64().unwrap() - 1.0).abs() < 1e-6, "{row}");
-            assert!(row["R"]["standard_error"][channel].as_f64().unwrap() < 1e-6);
-            assert_eq!(row["T"]["mean"][channel].as_f64(), Some(0.0));
-            assert_eq!(row["sum"]["mean"][channel], row["R"]["mean"][channel]);
-        }
-    }
-    let pretty: Value =
-        serde_json::from_str(&gonio(folder.path(), "bsdf albedo white.toml --cos 0.1,1 --samples 1e4").succeeds())
-            .unwrap();
-    assert_eq!(pretty, result);
-}
-
-#[test]
-fn rows_can_be_json_and_come_from_standard_input() {
-    let folder = folder();
-    let input = fs::read(folder.path().join("in.csv")).unwrap();
-    let output = Command::new(PROGRAM)
-        .args(["bsdf", "eval", "white.toml", "--directions", "-", "--json"])
-        .current_dir(folder.path())
-        .write_stdin(input)
-        .output()
-        .unwrap();
-    let text = String::from_utf8(output.stdout).unwrap();
-    let rows: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-    assert_eq!(rows.len(), 2);
-    assert!(rows[0]["pdf"].as_f64().unwrap() > 0.3 && rows[1]["pdf"].as_f64() == Some(0.0));
-}
-
-#[test]
-fn a_reader_that_stops_early_is_no_error() {
-    let folder = folder();
-    let mut child = std::process::Command::new(PROGRAM)
-        .args(["bsdf", "sample", "white.toml", "--wo", "0,0,1", "-n", "100000"])
-        .current_dir(folder.path())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut line = String::new();
-    BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
-    let output = child.wait_with_output().unwrap();
-    assert!(line.starts_with("wi_x") && output.status.success() && output.stderr.is_empty());
-}
-
-#[test]
 fn a_validation_writes_its_report_and_a_failure_is_exit_code_3() {
     let folder = folder();
     let run = gonio(folder.path(), "validate --quick --only leaks --out report");
@@ -419,113 +300,6 @@ fn a_validation_writes_its_report_and_a_failure_is_exit_code_3() {
     let run = gonio(folder.path(), "validate --quick --only leaks --out report --plant-failure");
     assert!(run.out.contains("FAIL  planted-failure"), "{}", run.out);
     assert_eq!(run.code, 3);
-}
-
-/// The files of a census of the Cornell box with few rays.
-fn census(folder: &Path, more: &str) -> Run {
-    gonio(folder, &format!("accel census {} --rays 4000 --scales 1,1e-4 {more}", scene("cornell-box.toml")))
-}
-
-#[test]
-fn a_census_prints_its_rows_and_its_json_has_the_same_numbers() {
-    let folder = folder();
-    let table = census(folder.path(), "--json census.json").succeeds();
-    for words in ["edge-from-inside", "axis-parallel", "pass  obvhs at scale 1e-4", "by brute", "passed"] {
-        assert!(table.contains(words), "\"{words}\" is not in: {table}");
-    }
-    let report: Value = serde_json::from_slice(&fs::read(folder.path().join("census.json")).unwrap()).unwrap();
-    assert_eq!((report["passed"].as_bool(), report["triangles"].as_u64()), (Some(true), Some(36)));
-    // Rays aimed at edges meet either triangle: with Embree there are disagreements, all of them its own.
-    assert!(report["disagreements"].as_array().unwrap().iter().all(|d| d["backend"] == "embree"));
-    let rows = report["rows"].as_array().unwrap();
-    let backends = 1 + report["backends"].as_array().unwrap().len();
-    assert_eq!(rows.len(), 2 * 15 * backends);
-    for row in rows {
-        let number = |name: &str| row[name].as_u64().unwrap_or_else(|| panic!("{name} in {row}"));
-        assert!(number("rays") > 1000 && number("hits") > 0 && number("hits") <= number("rays"), "{row}");
-        assert_eq!(number("seen_by_brute"), number("rays"), "brute can look at all rays of a small scene");
-        let disagreements: u64 = ["hit_or_miss", "prim", "t", "bary", "shadow"].map(number).iter().sum();
-        assert!(disagreements == 0 || row["backend"] == "embree", "{row}");
-        assert!(row["family"].is_string() && row["scale"].is_number() && row["specimen"].is_string());
-    }
-    for finding in report["findings"].as_array().unwrap() {
-        assert!(finding["count"].as_u64() <= finding["limit"].as_u64(), "{finding}");
-    }
-    let without = report["not_run"].as_array().unwrap().iter().any(|name| name == "embree");
-    assert_eq!(without, !rows.iter().any(|row| row["backend"] == "embree"));
-    assert_eq!(table.contains("not run  embree"), without);
-    // To standard output it is JSON alone, and the same census but for its duration.
-    let mut again: Value = serde_json::from_str(&census(folder.path(), "--json -").succeeds()).unwrap();
-    again["seconds"] = report["seconds"].clone();
-    assert_eq!(again, report);
-}
-
-#[test]
-fn a_backend_that_is_wrong_fails_the_census_and_its_rays_can_be_cast_again() {
-    let folder = folder();
-    let run = census(folder.path(), "--plant-fault second --json -");
-    run.fails(2, "faults are: drops hits on shared edges");
-    let output = Command::new(PROGRAM)
-        .args([
-            "accel",
-            "census",
-            &scene("cornell-box.toml"),
-            "--rays",
-            "4000",
-            "--scales",
-            "1",
-            "--json",
-            "census.json",
-        ])
-        .args(["--plant-fault", "returns the second nearest hit"])
-        .current_dir(folder.path())
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(3));
-    let text = String::from_utf8(output.stdout).unwrap();
-    assert!(text.contains("FAIL  obvhs at scale 1e0: rays that disagree") && text.contains("obvhs: another"), "{text}");
-    let report: Value = serde_json::from_slice(&fs::read(folder.path().join("census.json")).unwrap()).unwrap();
-    let listed = report["disagreements"].as_array().unwrap();
-    assert!(listed.len() > 20 && text.contains("more; --json FILE"), "{}", listed.len());
-    for entry in listed.iter().filter(|entry| entry["backend"] == "obvhs") {
-        let numbers = entry["ray"]["origin"].as_array().into_iter().chain(entry["ray"]["dir"].as_array()).flatten();
-        for number in numbers.chain([&entry["ray"]["t_min"], &entry["ray"]["t_max"], &entry["told"][0]["hit"]["t"]]) {
-            let decimal: f32 = number["decimal"].as_str().unwrap().parse().unwrap();
-            let bits = u32::from_str_radix(number["bits"].as_str().unwrap(), 16).unwrap();
-            assert_eq!(decimal.to_bits(), bits, "{entry}");
-        }
-        assert_eq!((&entry["told"][0]["backend"], &entry["told"][1]["backend"]), (&"brute".into(), &"obvhs".into()));
-        // The second nearest lies behind the nearest.
-        let t = |i: usize| entry["told"][i]["hit"]["t"]["decimal"].as_str().unwrap().parse::<f32>().unwrap();
-        assert!(t(1) > t(0), "{entry}");
-    }
-}
-
-#[test]
-fn a_benchmark_prints_ratios_and_json_with_the_same_shape() {
-    let folder = folder();
-    let bench = format!("accel bench {} --rays 2000 --rounds 5", scene("cornell-box.toml"));
-    let table = gonio(folder.path(), &format!("{bench} --threads 2 --backends obvhs,brute")).succeeds();
-    for words in ["Mrays/s", "ratio", "ambient-occlusion", "brute", "incoherent", "2 threads", "build s"] {
-        assert!(table.contains(words), "\"{words}\" is not in: {table}");
-    }
-    let report: Value = serde_json::from_str(&gonio(folder.path(), &format!("{bench} --json")).succeeds()).unwrap();
-    assert_eq!((report["rounds"].as_u64(), report["threads"].as_u64()), (Some(5), Some(1)));
-    for build in report["builds"].as_array().unwrap() {
-        assert!(build["seconds"].as_f64().unwrap() >= 0.0 && build["intersect"].is_string(), "{build}");
-    }
-    let results = report["results"].as_array().unwrap();
-    for set in ["primary", "bounce", "random", "shadow", "ambient-occlusion"] {
-        let rows: Vec<_> = results.iter().filter(|row| row["set"] == set).collect();
-        assert_eq!(rows[0]["ratio"].as_f64(), Some(1.0));
-        assert_eq!(rows.iter().any(|row| row["coherent"] == true), set == "primary");
-        for row in rows {
-            let [min, median, max, ratio] = ["min", "median", "max", "ratio"].map(|name| row[name].as_f64().unwrap());
-            assert!(0.0 < min && min <= median && median <= max && ratio > 0.0, "{row}");
-            assert!(row["hits"].as_u64().unwrap() <= row["rays"].as_u64().unwrap());
-        }
-    }
-    assert!(report["environment"]["processor"].is_string());
 }
 
 #[test]

@@ -8,7 +8,8 @@
 use crate::support::{Folder, Moments, cornell_box, data, moments, repository, welch};
 use gonio_accel::Intersect;
 use gonio_tracer::image::{Metadata, Picture, write_exr};
-use gonio_tracer::scene::{Scene, Sky};
+use gonio_tracer::normal_map::NormalMap;
+use gonio_tracer::scene::{NormalMapSpec, Scene, Sky};
 use gonio_tracer::{Backend, RenderSettings, World, render};
 use serde::Deserialize;
 use std::ops::ControlFlow;
@@ -154,4 +155,31 @@ fn scenes_under_panoramas_agree_with_mitsuba() {
             compare(&format!("environment_{name}"), &under(&map, &folder)).unwrap();
         }
     }
+}
+
+#[test]
+fn normal_maps_agree_with_mitsuba() {
+    let load = || Scene::load(&repository("tests/reference/normal_map.toml")).expect("the scene is shipped");
+    compare("normal_map", &load()).unwrap();
+    // Green downwards, or slopes a twentieth too steep: both are seen.
+    let mut green = load();
+    let map = &green.normal_maps[0];
+    green.normal_maps = vec![turned_over(map)];
+    println!("as it should be: {}", compare("normal_map", &green).unwrap_err());
+    let mut steep = load();
+    for material in &mut steep.materials {
+        material.normal_map = material.normal_map.map(|spec| NormalMapSpec { scale: 1.05, ..spec });
+    }
+    println!("as it should be: {}", compare("normal_map", &steep).unwrap_err());
+}
+
+/// The 8 × 8 map with its green channel pointing down the image.
+fn turned_over(map: &NormalMap) -> NormalMap {
+    let at = |i: u32| (i as f32 + 0.5) / 8.0;
+    let texel = |row: u32, column: u32| {
+        let n = map.sample(at(column), 1.0 - at(row), 1.0);
+        [n.x, -n.y, n.z].map(|x| ((x * 0.5 + 0.5) * 65_535.0).round() as u16)
+    };
+    let texels = (0..8).flat_map(|row| (0..8).map(move |column| texel(row, column))).collect();
+    NormalMap::from_linear16(8, 8, texels).expect("eight times eight")
 }

@@ -1,12 +1,15 @@
 //! Scene files, good and bad: what loads, what it becomes, and the very words of each refusal.
 
+mod environments;
+mod obj;
+
 use std::fs;
 use std::time::{Duration, Instant};
 
 use crate::support::{Folder, data};
 use gonio_kernel::Rgb;
 use gonio_tracer::image::{Metadata, Picture, write_exr, write_png};
-use gonio_tracer::scene::{Color, Environment, Model, Scene, Sky};
+use gonio_tracer::scene::{Color, Environment, Model, Scene};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
@@ -125,8 +128,8 @@ fn unknown_keys_and_bad_syntax_are_named_with_their_line() {
     );
     assert_eq!(
         refused_scene("[materials.a]\ntype = \"diffuse\"\nroughness = 0.5\n[[meshes]]\nfile = \"tri.obj\"\n"),
-        "scene.toml:3: unknown key \"roughness\" in material \"a\"; known are \"emission\", \"two_sided\", \"type\", \
-         \"weight\", \"base_color\""
+        "scene.toml:3: unknown key \"roughness\" in material \"a\"; known are \"emission\", \"two_sided\", \
+         \"normal_map\", \"normal_scale\", \"type\", \"weight\", \"base_color\""
     );
     let text = refused_scene("[film]\nwidth = = 4\n");
     assert!(text.starts_with("scene.toml:2: "), "{text}");
@@ -233,118 +236,6 @@ fn numbers_that_are_not_finite_are_refused_with_their_line() {
 }
 
 #[test]
-fn indices_out_of_range_are_refused_with_their_line() {
-    let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n";
-    let cases = [
-        ("f 1 2 4", "vertex index 4 in a face is out of range: the file defines 3"),
-        ("f 0 1 2", "vertex index 0 in a face: indices start at 1"),
-        ("f -4 -2 -1", "vertex index -4 in a face is out of range: 3 are defined above it"),
-        ("f 1/2 2/2 3/2", "texture coordinate index 2 in a face is out of range: the file defines 1"),
-        ("f 1//9 2//9 3//9", "normal index 9 in a face is out of range: the file defines 1"),
-        (
-            "f 1//6148914691236517206 2 3",
-            "normal index 6148914691236517206 in a face is out of range: the file defines 1",
-        ),
-        ("f 1 2 99999999999999999999", "\"99999999999999999999\" in a face is not an index"),
-        ("f 1 2 x", "\"x\" in a face is not an index"),
-        ("f 1/2/3/4 2 3", "\"1/2/3/4\" is not a corner of a face (vertex/texture/normal)"),
-        ("f // // //", "\"//\" is not a corner of a face (vertex/texture/normal)"),
-    ];
-    for (face, expected) in cases {
-        assert_eq!(refused_obj(&format!("{vertices}{face}\n")), format!("bad.obj:6: {expected}"));
-    }
-}
-
-#[test]
-fn meshes_without_triangles_are_refused() {
-    assert_eq!(refused_obj(""), "bad.obj:1: the file ends here and has no faces");
-    assert_eq!(refused_obj("v 0 0 0\n# nothing\n"), "bad.obj:2: the file ends here and has no faces");
-    assert_eq!(
-        refused_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3\n"),
-        "bad.obj:4: the file has no triangles; lines and points are not drawn"
-    );
-    assert_eq!(
-        refused_obj("v 0 0 0\nv 1 1 1\nv 2 2 2\n\nf 1 2 3\nf 1 1 2\n"),
-        "bad.obj:5: every triangle has zero area (2); nothing is left to draw"
-    );
-}
-
-#[test]
-fn triangles_without_area_are_dropped_with_one_warning() {
-    let folder = Folder::new();
-    let text = format!("usemtl m\n{TRIANGLE}f 1 1 2\nf 1 2 2\nl 1 2 3\n");
-    let scene = Scene::load(&folder.write("flat.obj", text)).unwrap();
-    assert_eq!(scene.meshes[0].triangles.len(), 1);
-    assert_eq!(
-        folder.warnings(&scene),
-        [
-            "flat.obj:8: lines and points are not drawn: ignored",
-            "flat.obj:6: triangles without area: 2 dropped, the first on this line",
-            "flat.obj:1: material \"m\" is not defined; drawn in grey",
-        ]
-    );
-}
-
-#[test]
-fn normals_that_the_file_does_not_have_are_left_out_with_a_warning() {
-    let folder = Folder::new();
-    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1/7 2/2/8 3/3/9\nf 1/1/7 2/2/8 3/3/9\n";
-    let scene = Scene::load(&folder.write("bare.obj", text)).unwrap();
-    assert_eq!((&scene.meshes[0].normals, &scene.meshes[0].uvs), (&None, &None));
-    assert_eq!(
-        folder.warnings(&scene)[..2],
-        [
-            "bare.obj:4: faces name normals, but the file defines none: 2 lines ignored, the first is this",
-            "bare.obj:4: faces name texture coordinates, but the file defines none: 2 lines ignored, the first is this",
-        ]
-    );
-}
-
-#[test]
-fn faces_with_and_without_normals_do_not_mix_them_up() {
-    let folder = Folder::new();
-    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 2\nvn 0 1 0\nvt 0 0\nf 1 2 3\nf 1//1 2//1 3//2\n\
-                f 1/1/1 2//1 4\nf 1/1 2/1 3/1\n";
-    let scene = Scene::load(&folder.write("mixed.obj", text)).unwrap();
-    let formats: Vec<_> =
-        scene.meshes.iter().map(|mesh| (mesh.uvs.is_some(), mesh.normals.is_some(), mesh.triangles.len())).collect();
-    assert_eq!(formats, [(false, false, 2), (true, false, 1), (false, true, 1)]);
-    let normals = scene.meshes[2].normals.as_ref().unwrap();
-    assert_eq!(normals.as_slice(), [[0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]);
-    for mesh in &scene.meshes {
-        assert!(mesh.normals.as_ref().is_none_or(|normals| normals.len() == mesh.positions.len()));
-        assert!(mesh.uvs.as_ref().is_none_or(|uvs| uvs.len() == mesh.positions.len()));
-        assert!(mesh.triangles.iter().flatten().all(|&i| (i as usize) < mesh.positions.len()));
-    }
-}
-
-#[test]
-fn files_of_every_age_and_system_are_read() {
-    let folder = Folder::new();
-    let same = |name: &str, text: &[u8]| {
-        let scene = Scene::load(&folder.write(name, text)).unwrap();
-        assert_eq!(scene.meshes[0].positions, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], "{name}");
-        assert_eq!(scene.meshes[0].triangles, [[0, 1, 2]], "{name}");
-    };
-    same("windows.obj", TRIANGLE.replace('\n', "\r\n").as_bytes());
-    same("mac.obj", TRIANGLE.replace('\n', "\r").as_bytes());
-    same("mark.obj", format!("\u{feff}{TRIANGLE}").as_bytes());
-    same("latin1.obj", &[b"# caf\xe9\n".as_slice(), TRIANGLE.as_bytes()].concat());
-    same("continued.obj", b"v 0 0 0\nv 1 \\\n0 0\nv 0 1 0\nf 1 \\\n 2 \\\n 3");
-    same("comments.obj", b"v 0 0 0 # one\nv 1 0 0\nv 0 1 0\n  f 1 2 3 # a face\n");
-    same("tabs.obj", b"v\t0\t0\t0\nv 1 0 0\nv 0 1 0\nusemtl\tred\nf\t1 2 3\n");
-    same("later.obj", b"f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
-}
-
-#[test]
-fn coordinates_of_a_map_projection_keep_their_digits() {
-    let folder = Folder::new();
-    let text = "v 680000.001 5400000.002 0\nv 680000.003 5400000.002 0\nv 680000.001 5400000.004 0\nf 1 2 3\n";
-    let scene = Scene::load(&folder.write("far.obj", text)).unwrap();
-    assert_eq!(scene.meshes[0].positions[0], [680_000.001, 5_400_000.002, 0.0]);
-}
-
-#[test]
 fn materials_come_from_the_scene_then_the_library_then_grey() {
     let folder = Folder::new();
     folder.write(
@@ -442,80 +333,4 @@ fn pictures_that_cannot_be_written_say_so_and_leave_nothing_behind() {
     fs::create_dir(&taken).unwrap();
     assert!(write_png(&taken, &picture, 0.0).is_err());
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-}
-
-/// A scene of one triangle under `[environment]` with these lines, which begin at line 4.
-fn under(lines: &str) -> String {
-    format!("[[meshes]]\nfile = \"tri.obj\"\n[environment]\n{lines}")
-}
-
-#[test]
-fn every_key_of_an_environment_map_arrives_and_odd_texels_are_dealt_with() {
-    let folder = Folder::new();
-    folder.write("tri.obj", TRIANGLE);
-    let rgb = vec![[1.0, 2.0, 3.0], [0.5, -1.0, 0.0], [0.0; 3], [-0.0, -2.0, 1.0], [4.0; 3], [5.0; 3]];
-    let map = Picture { width: 3, height: 2, rgb };
-    write_exr(&folder.path().join("sky.exr"), &map, None, &Metadata::default()).unwrap();
-    let text =
-        under("map = \"sky.exr\"\nrotation = -30\nintensity = 0.25\ncamera_visible = false\nilluminates = true\n");
-    let scene = Scene::load(&folder.write("scene.toml", text)).unwrap();
-    let Sky::Map(sky) = &scene.environment.sky else { panic!("{:?}", scene.environment) };
-    assert_eq!((sky.rotation, sky.intensity), (-30.0, 0.25));
-    assert_eq!((scene.environment.camera_visible, scene.environment.illuminates), (false, true));
-    assert_eq!(sky.picture.rgb[..4], [[1.0, 2.0, 3.0], [0.5, 0.0, 0.0], [0.0; 3], [0.0, 0.0, 1.0]]);
-    let warnings = folder.warnings(&scene);
-    assert!(
-        warnings.contains(&"sky.exr: 2 pixels with negative channels, which count as 0".to_owned()),
-        "{warnings:?}"
-    );
-
-    let black = Picture { width: 1, height: 1, rgb: vec![[0.0; 3]] };
-    write_exr(&folder.path().join("sky.exr"), &black, None, &Metadata::default()).unwrap();
-    let scene = Scene::load(&folder.write("scene.toml", under("map = \"sky.exr\"\n"))).unwrap();
-    assert!(folder.warnings(&scene).contains(&"the scene has no light: the picture will be black".to_owned()));
-    assert!(!gonio_tracer::World::new(&scene).unwrap().plan().environment);
-}
-
-#[test]
-fn environments_that_cannot_be_used_are_refused_in_words() {
-    let folder = Folder::new();
-    folder.write("tri.obj", TRIANGLE);
-    let texels = |name: &str, texel: [f32; 3]| {
-        let picture = Picture { width: 2, height: 2, rgb: vec![[1.0; 3], [1.0; 3], [1.0; 3], texel] };
-        write_exr(&folder.path().join(name), &picture, None, &Metadata::default()).unwrap();
-    };
-    texels("sky.exr", [2e6, 1.0, 1.0]);
-    texels("nan.exr", [f32::NAN, 1.0, 1.0]);
-    texels("inf.exr", [1.0, 1.0, f32::INFINITY]);
-    folder.write("cut.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n@`p\u{7f}@`p");
-    write_png(&folder.path().join("sky.png"), &Picture { width: 1, height: 1, rgb: vec![[1.0; 3]] }, 0.0).unwrap();
-    let cases = [
-        ("map = \"none.hdr\"", "scene.toml:4: the file \"none.hdr\" does not exist"),
-        (
-            "radiance = 1\nmap = \"sky.exr\"",
-            "scene.toml:5: an environment has either \"radiance\" or \"map\", not both",
-        ),
-        ("radiance = 1\nintensity = 2", "scene.toml:5: \"intensity\" is for an environment with a \"map\""),
-        ("map = \"sky.exr\"\nintensity = -1", "scene.toml:5: \"intensity\" must be a number from 0 to 1000000, not -1"),
-        (
-            "radiance = 1\ncamera_visible = false\nilluminates = false",
-            "scene.toml:3: an environment that neither lights nor is visible to the camera does nothing",
-        ),
-        (
-            "map = \"sky.exr\"",
-            "scene.toml:4: \"sky.exr\" has a radiance of 2e6, which times \"intensity\" 1 is more than 1e6: an \"intensity\" \
-             of at most 5.000e-1 is possible",
-        ),
-        ("map = \"nan.exr\"", "nan.exr: pixel (1, 1), counted from the top left, is not finite: [NaN, 1.0, 1.0]"),
-        ("map = \"inf.exr\"", "inf.exr: pixel (1, 1), counted from the top left, is not finite: [1.0, 1.0, inf]"),
-        ("map = \"cut.hdr\"", "cut.hdr: is truncated: it ends before its last pixel"),
-        (
-            "map = \"sky.png\"",
-            "sky.png: has eight or sixteen bits per channel, which cannot hold the radiance of an environment: Radiance (.hdr) \
-             or OpenEXR (.exr) is needed",
-        ),
-    ];
-    for (lines, expected) in cases {
-        assert_eq!(folder.refusal(&folder.write("scene.toml", under(lines))), expected);
-    }
 }

@@ -6,7 +6,7 @@ use gonio_tracer::scene::Scene;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
+use tempfile::TempDir;
 
 /// A file of the repository.
 pub(crate) fn repository(path: &str) -> PathBuf {
@@ -32,27 +32,23 @@ pub(crate) fn cornell_box(size: u32, spp: u32) -> Scene {
 }
 
 /// A folder of its own for one test, removed at its end.
-pub(crate) struct Folder(PathBuf);
+pub(crate) struct Folder(TempDir);
 
 impl Folder {
     pub(crate) fn new() -> Self {
-        static COUNTER: AtomicU32 = AtomicU32::new(0);
-        let number = COUNTER.fetch_add(1, Ordering::Relaxed);
-        let path = std::env::temp_dir().join(format!("gonio-tests-{}-{number}", std::process::id()));
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
+        Self(tempfile::tempdir().expect("there is room for temporary files"))
     }
 
     /// Writes a file, and the folders it lies in.
     pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
-        let path = self.0.join(name);
+        let path = self.path().join(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(&path, content).unwrap();
         path
     }
 
     pub(crate) fn path(&self) -> &Path {
-        &self.0
+        self.0.path()
     }
 
     /// The refusal of a file, without the folder's name.
@@ -63,18 +59,12 @@ impl Folder {
 
     /// A text without the folder's name.
     pub(crate) fn strip(&self, text: &str) -> String {
-        text.replace(&format!("{}/", self.0.display()), "")
+        text.replace(&format!("{}/", self.path().display()), "")
     }
 
     /// The warnings of a scene, without the folder's name.
     pub(crate) fn warnings(&self, scene: &Scene) -> Vec<String> {
         scene.warnings.iter().map(|warning| self.strip(warning)).collect()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
     }
 }
 

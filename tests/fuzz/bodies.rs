@@ -5,6 +5,7 @@
 //! the file has. It returns what happened, in words, so that runs can count how much of a parser they reach.
 
 use gonio_tracer::image::{ImageError, Picture, read_exr};
+use gonio_tracer::normal_map::NormalMap;
 use gonio_tracer::scene::{Color, FresnelSpec, Material, Mesh, MicrofacetSpec, Model, Scene, SceneError, Sky};
 use gonio_tracer::texture::Texture;
 use gonio_tracer::{World, hdr};
@@ -125,7 +126,11 @@ fn judge_picture(result: Result<Picture, ImageError>, path: &Path) -> String {
 }
 
 fn texture(folder: &Path, data: &[u8]) -> String {
-    match Texture::load(&write(folder, "fuzz.png", data)) {
+    let path = write(folder, "fuzz.png", data);
+    if let Ok(map) = NormalMap::load(&path) {
+        assert!((map.sample(0.3, 0.7, 1.0).length() - 1.0).abs() < 1e-5);
+    }
+    match Texture::load(&path) {
         Ok(texture) => {
             let color = texture.sample(0.3, 0.7);
             assert!([color.r, color.g, color.b].iter().all(|c| (0.0..=1.0).contains(c)));
@@ -241,6 +246,12 @@ pub(crate) fn assert_scene(scene: &Scene) {
     }
     assert!(scene.materials.len() <= 65_535);
     scene.materials.iter().for_each(|material| assert_material(material, scene.textures.len()));
+    for mesh in &scene.meshes {
+        let maps = mesh.materials.iter().filter_map(|&m| scene.materials.get(m as usize)?.normal_map);
+        maps.for_each(|spec| {
+            assert!(mesh.uvs.is_some() && spec.map < scene.normal_maps.len() && (0.0..=10.0).contains(&spec.scale));
+        });
+    }
     assert!(!scene.meshes.is_empty() && !scene.instances.is_empty());
     scene.meshes.iter().for_each(|mesh| assert_mesh(mesh, scene.materials.len()));
     for instance in &scene.instances {

@@ -6,6 +6,10 @@
 //! against it. Any input gives an orthonormal frame: a normal that is zero or not finite becomes `z`, a tangent that is
 //! parallel to the normal is ignored.
 
+mod tilt;
+
+pub use tilt::{GRAZING, facing, on_its_side};
+
 use crate::real::Real;
 use crate::vec3::Vec3;
 
@@ -42,6 +46,13 @@ impl<R: Real> Frame<R> {
         // Once more against the normal: the first subtraction leaves eps/|rest|.
         let x = (x - z * z.dot(x)).normalize();
         Self { x, y: z.cross(x), z }
+    }
+
+    /// `yes` where `mask`, `no` elsewhere.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+        let each = |yes, no| Vec3::select(mask, yes, no);
+        Self { x: each(yes.x, no.x), y: each(yes.y, no.y), z: each(yes.z, no.z) }
     }
 
     /// World to local.

@@ -3,6 +3,7 @@
 use crate::faults::planted;
 use crate::frames::{self, kernel};
 use crate::mitsuba::{self, Model};
+use crate::normal_map::{self, Rules};
 use crate::probe::{Dir, Worth};
 use crate::run::Task;
 use crate::zoo::{LAMBERT, METAL, SCHLICK};
@@ -42,6 +43,46 @@ pub(crate) fn tasks() -> Vec<Task<'static>> {
         }),
         planted("frame of a normal that is not normalised", "frames", |run| {
             frames::measure(|n, t| Frame { z: n, ..kernel(n, t) }, run)
+        }),
+        planted("tilted to the left hand", "frames", |run| {
+            frames::measure_tilted(|f, n| Frame { y: -f.tilted(n).y, ..f.tilted(n) }, run)
+        }),
+        planted("tangent not leaned against the map's normal", "frames", |run| {
+            frames::measure_tilted(|f, n| Frame { x: f.x, ..f.tilted(n) }, run)
+        }),
+        planted("green channel downwards", "frames", |run| {
+            frames::measure_tilted(|f, n| f.tilted(Vec3::new(n.x, -n.y, n.z)), run)
+        }),
+        planted("map's normal below the surface used as it is", "frames", |run| {
+            frames::measure_tilted(|f, n| Frame::from_normal_tangent(f.to_world(n), f.x), run)
+        }),
+        planted("normal left facing away", "frames", |run| frames::measure_facing(|n, _, _| n, run)),
+        planted("geometric normal where the other faces away", "frames", |run| {
+            let wrong: frames::Face = |n, geometric, wo| {
+                let turned = if n.dot(wo) > 0.0 { n } else { geometric };
+                if turned.dot(wo) > 0.0 { turned } else { wo }
+            };
+            frames::measure_facing(wrong, run)
+        }),
+        planted("light on the wrong side kept", "normal-map", |run| {
+            let rules = Rules { counts: |_, _, _| true, ..normal_map::KERNEL };
+            normal_map::measure(rules, normal_map::LAMBERT, 30.0, run)
+        }),
+        planted("side decided by the shading normal", "normal-map", |run| {
+            let rules = Rules { counts: |_, tilted, wi| tilted.z.dot(wi) > 0.0, ..normal_map::KERNEL };
+            normal_map::measure(rules, normal_map::MIRROR, 30.0, run)
+        }),
+        planted("tilted to the other side", "normal-map", |run| {
+            let rules = Rules { tilted: |f, n| f.tilted(Vec3::new(-n.x, n.y, n.z)), ..normal_map::KERNEL };
+            normal_map::measure(rules, normal_map::MIRROR, 15.0, run)
+        }),
+        planted("bitangent 2 % too long", "normal-map", |run| {
+            let wrong = |f: &Frame<f64>, n: Dir| Frame { y: f.tilted(n).y * 1.02, ..f.tilted(n) };
+            normal_map::measure(Rules { tilted: wrong, ..normal_map::KERNEL }, normal_map::GGX, 30.0, run)
+        }),
+        planted("normal left facing away", "normal-map", |run| {
+            let rules = Rules { facing: |n, _, _| n, ..normal_map::KERNEL };
+            normal_map::measure(rules, normal_map::LAMBERT, 40.0, run)
         }),
         planted("cosine of the wrong sign in one quadrant", "elementary", |run| {
             let wrong = |u: f64| {

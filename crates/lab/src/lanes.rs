@@ -11,7 +11,7 @@ use crate::random::Random;
 use crate::totality::{SPECIAL, lane, lanes_of, parameter};
 use crate::zoo::Species;
 use gonio_kernel::closure::Unguarded;
-use gonio_kernel::frame::Frame;
+use gonio_kernel::frame::{Frame, facing};
 use gonio_kernel::{Event, F32x8, Real, Surface, Value, Vec3, fresnel, math, warp};
 
 /// Whether two floats are the same: the same bits, or both NaN.
@@ -193,12 +193,14 @@ fn parts<R: Real>(x: [R; 6]) -> Vec<R> {
     }
     out.push(math::pow(x[3], x[4] * R::lit(200.0) - R::lit(100.0)));
     out.extend(warp::sample_uniform_triangle([x[3], x[4]]));
-    let frames = [Frame::from_normal(v), Frame::from_normal_tangent(v, w)];
+    let flat = Frame::from_normal_tangent(v, w);
+    let frames = [Frame::from_normal(v), flat, flat.tilted(w)];
     let mut vectors = vec![
         warp::sample_cosine_hemisphere([x[3], x[4]]),
         warp::sample_uniform_sphere([x[3], x[4]]),
         v.normalize_or(w),
         v.cross(w),
+        facing(v, w, flat.y),
     ];
     for f in frames {
         vectors.extend([f.x, f.y, f.z, f.to_local(w), f.to_world(w)]);

@@ -39,6 +39,7 @@ mod frames;
 mod furnace;
 mod lanes;
 mod mitsuba;
+mod normal_map;
 mod normalisation;
 mod oracle;
 pub mod plots;

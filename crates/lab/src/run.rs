@@ -12,7 +12,8 @@ use crate::statistics::{FAMILY_SIGNIFICANCE, sidak};
 use crate::subject::{Subject, View};
 use crate::zoo::{rows, species};
 use crate::{
-    chi2, consistency, discrete, elementary, frames, furnace, lanes, mitsuba, normalisation, precision, reciprocity,
+    chi2, consistency, discrete, elementary, frames, furnace, lanes, mitsuba, normal_map, normalisation, precision,
+    reciprocity,
 };
 use crate::{reference, totality, walk, warps, weight};
 use gonio_kernel::Properties;
@@ -62,6 +63,7 @@ pub fn instruments() -> &'static [(&'static str, &'static str)] {
             "what single scattering loses, and what is added for it, is what a random walk on the microsurface finds",
         ),
         ("frames", "local frames are orthonormal, right-handed and faithful to normal and tangent"),
+        ("normal-map", "a tilted frame loses what it sends into the surface, and no more: its rows are the losses"),
         ("elementary", "elementary functions keep their stated error"),
         ("warps", "warps distribute points as their densities say"),
         ("planted-faults", "each instrument catches the faults that are planted for it"),
@@ -190,6 +192,9 @@ fn kernel_tasks() -> Vec<Task<'static>> {
     tasks.push(Task::new("mitsuba", "Fresnel", 0, mitsuba::measure_fresnel));
     tasks.push(Task::new("walk", "GGX", walk::TESTS, |run| walk::measure(walk::KERNEL, run)));
     tasks.push(Task::new("frames", "from normal and tangent", 0, |run| frames::measure(frames::kernel, run)));
+    tasks.push(Task::new("frames", "tilted by a normal map", 0, |run| frames::measure_tilted(frames::tilted, run)));
+    tasks.push(Task::new("frames", "turned to face the viewer", 0, |run| frames::measure_facing(frames::facing, run)));
+    tasks.extend(normal_map::tasks());
     tasks.push(Task::new("elementary", "sin_cos_turns f32", 0, |run| {
         elementary::measure(elementary::single, true, run)
     }));

@@ -37,6 +37,7 @@ pub mod image;
 mod layers;
 mod light;
 mod material;
+pub mod normal_map;
 mod plan;
 mod point;
 mod queue;

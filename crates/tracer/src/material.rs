@@ -5,7 +5,7 @@
 
 use crate::scene::{
     Color, Compensation, Directional, Distribution, FresnelSpec, LobeSpec, Masking, Material, MicrofacetSpec, Model,
-    PhongNorm, Scene,
+    NormalMapSpec, PhongNorm, Scene,
 };
 use crate::texture::Texture;
 use gonio_kernel::fresnel::Fresnel;
@@ -27,6 +27,7 @@ pub(crate) struct PreparedMaterial {
     pub(crate) two_sided: bool,
     pub(crate) textured: bool,
     pub(crate) anisotropic: bool,
+    pub(crate) normal_map: Option<NormalMapSpec>,
     pub(crate) discrete: bool,
     pub(crate) transmits: bool,
 }
@@ -69,6 +70,7 @@ impl PreparedMaterial {
                 emission: spec.emission,
                 two_sided: spec.two_sided,
                 textured: parts.iter().any(Part::is_textured),
+                normal_map: spec.normal_map,
                 anisotropic: has(|l| is_anisotropic(&l.model)),
                 discrete: has(|l| matches!(l.model, Model::Mirror { .. } | Model::Dielectric { .. })),
                 transmits: has(|l| matches!(l.model, Model::Dielectric { .. })),

@@ -19,6 +19,8 @@ pub struct Plan {
     pub smooth_normals: bool,
     /// Some lobe depends on the tangent, on a mesh with texture coordinates.
     pub tangents: bool,
+    /// Some material tilts its frame by an image.
+    pub normal_maps: bool,
     /// Some material is black from behind.
     pub one_sided: bool,
     /// Some lobe is discrete.
@@ -36,19 +38,26 @@ impl Plan {
             textures: true,
             smooth_normals: true,
             tangents: true,
+            normal_maps: true,
             one_sided: true,
             discrete: true,
             transmission: true,
         }
     }
 
-    fn named(&self) -> [(bool, &'static str); 8] {
+    /// Whether anything is looked up at texture coordinates, or leans on them.
+    pub(crate) fn uvs(&self) -> bool {
+        self.textures || self.tangents || self.normal_maps
+    }
+
+    fn named(&self) -> [(bool, &'static str); 9] {
         [
             (self.area_lights, "area lights"),
             (self.environment, "environment"),
             (self.textures, "textures"),
             (self.smooth_normals, "smooth normals"),
             (self.tangents, "tangents"),
+            (self.normal_maps, "normal maps"),
             (self.one_sided, "one-sided materials"),
             (self.discrete, "mirrors"),
             (self.transmission, "transmission"),

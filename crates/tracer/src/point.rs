@@ -1,9 +1,11 @@
 //! Shading points: where eight paths met the world, and in which frame they are shaded.
 
+use crate::material::PreparedMaterial;
 use crate::plan::Plan;
 use crate::queue::Batch;
+use crate::scene::NormalMapSpec;
 use crate::world::World;
-use gonio_kernel::frame::tangents;
+use gonio_kernel::frame::{facing, tangents};
 use gonio_kernel::{F32x8, Frame, Mask, Mask8, Real, Vec3, each_lane};
 
 /// Error bound of a position formed from barycentrics, in units of the sum of its absolute terms: two roundings for the
@@ -76,7 +78,7 @@ impl ShadingPoints {
         let normal = winding * side;
 
         let mut shading = normal;
-        let by_vertex = plan.smooth_normals || plan.textures || plan.tangents;
+        let by_vertex = plan.smooth_normals || plan.uvs();
         let vertices = if by_vertex {
             each_lane(|l| {
                 let (instance, prim) = batch.hit_place(l);
@@ -90,49 +92,53 @@ impl ShadingPoints {
             let at = |c: usize| Vec3::from_lanes(|l| world.normals.get(vertices[l][c]).copied().unwrap_or(flat));
             let b0 = F32x8::ONE - bary[0] - bary[1];
             let n = ((at(0) * b0).along(bary[0], at(1)).along(bary[1], at(2)) * side).normalize_or(normal);
-            // A shading normal that does not face the viewer, or that leans behind the surface, is of no use.
-            let usable = n.dot(wo).gt(F32x8::ZERO) & n.dot(normal).gt(F32x8::ZERO);
-            shading = Vec3::select(usable, n, normal);
+            shading = facing(n, normal, wo);
         }
 
         let mut uv = [F32x8::ZERO; 2];
         let (x, y) = tangents(shading); // unit already: no need to normalise again
         let mut frame = Frame { x, y, z: shading };
-        if (plan.textures || plan.tangents) && !world.uvs.is_empty() {
+        let materials = each_lane(|l| &world.materials[triangles[l].material as usize]);
+        let which = |is: fn(&PreparedMaterial) -> bool| {
+            Mask8::from_bits((0..F32x8::LANES).fold(0, |bits, l| bits | u32::from(is(materials[l])) << l))
+        };
+        if plan.uvs() && !world.uvs.is_empty() {
             let at = |c: usize, k: usize| F32x8::from_fn(|l| world.uvs[vertices[l][c]][k]);
             let [u, v] = [[at(0, 0), at(1, 0), at(2, 0)], [at(0, 1), at(1, 1), at(2, 1)]];
             let b0 = F32x8::ONE - bary[0] - bary[1];
             let blend = |x: [F32x8; 3]| b0.mul_add(x[0], bary[0].mul_add(x[1], bary[1] * x[2]));
             uv = [blend(u), blend(v)];
-            let anisotropic =
-                Mask8::from_bits((0..F32x8::LANES).fold(0, |bits, l| {
-                    bits | u32::from(world.materials[triangles[l].material as usize].anisotropic) << l
-                }));
-            if plan.tangents && anisotropic.any() {
+            let (mut along_u, mut mapped) = (Mask8::splat(false), Mask8::splat(false));
+            if plan.tangents {
+                along_u = which(|m| m.anisotropic);
+            }
+            if plan.normal_maps {
+                mapped = which(|m| m.normal_map.is_some());
+                along_u = along_u | mapped;
+            }
+            if along_u.any() {
                 // ∂p/∂u up to a positive factor: solve e₁ = Δu₁ ∂u + Δv₁ ∂v, e₂ likewise.
                 let (dv1, dv2) = (v[1] - v[0], v[2] - v[0]);
                 let det = (u[1] - u[0]) * dv2 - (u[2] - u[0]) * dv1;
                 let (e1, e2) = (corners[1] - corners[0], corners[2] - corners[0]);
-                let tangent = (e1 * dv2 - e2 * dv1) * F32x8::ONE.copysign(det);
-                let along = Frame::from_normal_tangent(shading, tangent);
-                frame = Frame {
-                    x: Vec3::select(anisotropic, along.x, frame.x),
-                    y: Vec3::select(anisotropic, along.y, frame.y),
-                    z: frame.z,
-                };
+                let handed = F32x8::ONE.copysign(det);
+                let tangent = (e1 * dv2 - e2 * dv1) * handed;
+                let along = Frame { z: shading, ..Frame::from_normal_tangent(shading, tangent) };
+                frame = Frame::select(along_u, along, frame);
+                if mapped.any() {
+                    let n = sampled_normals(world, &materials, uv);
+                    // ∂p/∂v lies to the other hand where the image is mirrored, and seen from behind, bumps are dents.
+                    let n = Vec3::new(n.x * side, n.y * handed, n.z);
+                    let tilted = frame.tilted(facing(n, frame.to_local(normal), frame.to_local(wo)));
+                    frame = Frame::select(mapped, tilted, frame);
+                }
             }
         }
         let material = each_lane(|l| triangles[l].material);
         if plan.transmission {
             // An interface has an inside, behind its winding: seen from there, wo is below the surface.
-            let transmits = (0..F32x8::LANES)
-                .fold(0, |bits, l| bits | u32::from(world.materials[material[l] as usize].transmits) << l);
-            let turn = Mask8::from_bits(transmits) & !front;
-            frame = Frame {
-                x: frame.x,
-                y: Vec3::select(turn, -frame.y, frame.y),
-                z: Vec3::select(turn, -frame.z, frame.z),
-            };
+            let turn = which(|m| m.transmits) & !front;
+            frame = Frame::select(turn, Frame { x: frame.x, y: -frame.y, z: -frame.z }, frame);
         }
         Self {
             point: SurfacePoint::new(&corners, bary),
@@ -145,4 +151,13 @@ impl ShadingPoints {
             material,
         }
     }
+}
+
+/// The normals of the lanes' maps at their texture coordinates, in tangent space; (0, 0, 1) without a map.
+fn sampled_normals(world: &World, materials: &[&PreparedMaterial; F32x8::LANES], uv: [F32x8; 2]) -> Vec3<F32x8> {
+    let [u, v] = uv.map(F32x8::to_array);
+    Vec3::from_lanes(|l| match materials[l].normal_map {
+        Some(NormalMapSpec { map, scale }) => world.normal_maps[map].sample(u[l], v[l], scale),
+        None => Vec3::unit_z(),
+    })
 }

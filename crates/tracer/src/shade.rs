@@ -14,6 +14,7 @@ use crate::queue::{Batch, Paths, Queue, ShadowQueue};
 use crate::sampler::{Purpose, Random4, Sampler};
 use crate::world::{World, splat_rgb};
 use gonio_accel::Ray8;
+use gonio_kernel::frame::on_its_side;
 use gonio_kernel::lobe::Lobe;
 use gonio_kernel::surface::Weighted;
 use gonio_kernel::warp::{pdf_cosine_hemisphere, sample_cosine_hemisphere, sample_uniform_triangle};
@@ -245,8 +246,7 @@ fn receive_emission(
 }
 
 /// Where a ray in the direction wi starts (at `origin` if it stays on wo's side), and whether it leaves on the side on which the
-/// closure scattered it: `sides` is the product of the local cosines. Reflection or transmission is decided by the geometric side; light that the shading normal
-/// reflects into the surface, or refracts out of it, carries nothing.
+/// closure scattered it: `sides` is the product of the local cosines.
 #[inline(always)]
 fn leaving(
     ctx: &Context,
@@ -255,13 +255,12 @@ fn leaving(
     wi: Vec3<F32x8>,
     sides: F32x8,
 ) -> (Vec3<F32x8>, Mask8) {
-    let above = points.normal.dot(wi).gt(F32x8::ZERO);
     if !ctx.plan.transmission {
-        return (origin, above);
+        return (origin, on_its_side(points.normal, wi, Mask8::splat(false)));
     }
-    let through = sides.lt(F32x8::ZERO);
+    let above = points.normal.dot(wi).gt(F32x8::ZERO);
     let start = Vec3::select(above, origin, points.point.off_plane(-points.normal));
-    (start, (above & !through) | (!above & through))
+    (start, on_its_side(points.normal, wi, sides.lt(F32x8::ZERO)))
 }
 
 /// A direction in which light is asked for.

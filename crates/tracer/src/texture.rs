@@ -60,11 +60,7 @@ impl Texture {
     /// coordinate that is not finite counts as 0.
     #[must_use]
     pub fn sample(&self, u: f32, v: f32) -> Rgb<f32> {
-        let (x0, x1, tx) = neighbours(u, self.width);
-        let (y0, y1, ty) = neighbours(-v, self.height); // rows run downwards; the image repeats, so -v serves as 1 - v
-        let top = mix(self.texel(x0, y0), self.texel(x1, y0), tx);
-        let bottom = mix(self.texel(x0, y1), self.texel(x1, y1), tx);
-        let [r, g, b] = mix(top, bottom, ty);
+        let [r, g, b] = blend([self.width, self.height], [u, v], |x, y| self.texel(x, y));
         Rgb::new(r, g, b)
     }
 
@@ -76,14 +72,28 @@ impl Texture {
 
 /// Width, height and 8-bit sRGB pixels of a PNG or JPEG file, rows from the top; see [`Texture::load`].
 pub(crate) fn decode_srgb8(path: &Path) -> Result<(u32, u32, Vec<[u8; 3]>), String> {
-    let image = image::ImageReader::open(path)
+    let image = open(path)?.into_rgb8();
+    let (width, height) = image.dimensions();
+    Ok((width, height, image.pixels().map(|pixel| pixel.0).collect()))
+}
+
+/// A PNG or JPEG file, decoded as it is.
+pub(crate) fn open(path: &Path) -> Result<image::DynamicImage, String> {
+    image::ImageReader::open(path)
         .and_then(image::ImageReader::with_guessed_format)
         .map_err(|error| format!("cannot be read: {error}"))?
         .decode()
-        .map_err(|error| format!("cannot be decoded: {error}"))?
-        .into_rgb8();
-    let (width, height) = image.dimensions();
-    Ok((width, height, image.pixels().map(|pixel| pixel.0).collect()))
+        .map_err(|error| format!("cannot be decoded: {error}"))
+}
+
+/// Bilinear between the centres of `texel(column, row)` in an image that repeats; rows run downwards, v = 0 is the bottom.
+#[inline]
+pub(crate) fn blend([width, height]: [u32; 2], [u, v]: [f32; 2], texel: impl Fn(u32, u32) -> [f32; 3]) -> [f32; 3] {
+    let (x0, x1, tx) = neighbours(u, width);
+    let (y0, y1, ty) = neighbours(-v, height); // the image repeats, so -v serves as 1 - v
+    let top = mix(texel(x0, y0), texel(x1, y0), tx);
+    let bottom = mix(texel(x0, y1), texel(x1, y1), tx);
+    mix(top, bottom, ty)
 }
 
 /// The two texels around a coordinate in one direction, and the share of the second.

@@ -7,6 +7,7 @@
 use crate::fingerprint::Fingerprint;
 use crate::light::{Emitter, Lights};
 use crate::material::PreparedMaterial;
+use crate::normal_map::NormalMap;
 use crate::plan::Plan;
 use crate::scene::{Camera, FilmSettings, Instance, Loading, Mesh, Scene, SceneError, Stage};
 use crate::texture::Texture;
@@ -30,10 +31,11 @@ pub struct World {
     pub(crate) triangles: Vec<Triangle>,
     /// One entry per vertex if the plan has smooth normals, else empty; a zero normal means the geometric one.
     pub(crate) normals: Vec<Vec3<f32>>,
-    /// One entry per vertex if the plan has textures or tangents, else empty.
+    /// One entry per vertex if something of the plan looks at them, else empty.
     pub(crate) uvs: Vec<[f32; 2]>,
     pub(crate) materials: Vec<PreparedMaterial>,
     pub(crate) textures: Vec<Texture>,
+    pub(crate) normal_maps: Vec<NormalMap>,
     pub(crate) lights: Lights,
     plan: Plan,
     warnings: Vec<String>,
@@ -72,8 +74,8 @@ impl World {
     /// # Errors
     /// If the scene cannot be cast at: too many triangles, or positions that overflow `f32`.
     pub fn new(scene: &Scene) -> Result<Self, SceneError> {
-        let (meshes, textures) = (Cow::Borrowed(&scene.meshes[..]), scene.textures.clone());
-        Self::place(scene, meshes, textures, &mut |_| ())
+        let images = (scene.textures.clone(), scene.normal_maps.clone());
+        Self::place(scene, Cow::Borrowed(&scene.meshes[..]), images, &mut |_| ())
     }
 
     /// Places the scene and takes its meshes and images out of it, each mesh freed once it is placed: for scenes that fill
@@ -82,14 +84,15 @@ impl World {
     /// # Errors
     /// If the scene cannot be cast at: too many triangles, or positions that overflow `f32`.
     pub fn take(scene: &mut Scene, progress: &mut dyn FnMut(Loading)) -> Result<Self, SceneError> {
-        let (meshes, textures) = (std::mem::take(&mut scene.meshes), std::mem::take(&mut scene.textures));
-        Self::place(scene, Cow::Owned(meshes), textures, progress)
+        let images = (std::mem::take(&mut scene.textures), std::mem::take(&mut scene.normal_maps));
+        let meshes = std::mem::take(&mut scene.meshes);
+        Self::place(scene, Cow::Owned(meshes), images, progress)
     }
 
     fn place(
         scene: &Scene,
         mut meshes: Cow<'_, [Mesh]>,
-        textures: Vec<Texture>,
+        (textures, normal_maps): (Vec<Texture>, Vec<NormalMap>),
         progress: &mut dyn FnMut(Loading),
     ) -> Result<Self, SceneError> {
         let refuse = |message: String| SceneError::file(Path::new("scene"), message);
@@ -102,6 +105,7 @@ impl World {
             textures: materials.iter().any(|m| m.textured),
             smooth_normals: meshes.iter().any(|m| m.normals.is_some()),
             tangents: false,
+            normal_maps: materials.iter().any(|m| m.normal_map.is_some()),
             one_sided: materials.iter().any(|m| !m.two_sided),
             discrete: materials.iter().any(|m| m.discrete),
             transmission: materials.iter().any(|m| m.transmits),
@@ -128,6 +132,7 @@ impl World {
             uvs: Vec::new(),
             materials,
             textures,
+            normal_maps,
             lights: Lights::default(),
             plan,
             warnings,
@@ -205,6 +210,8 @@ impl World {
             print.bytes(format!("{:?}", material.spec).as_bytes());
         }
         self.textures.iter().for_each(|texture| print.bytes(texture.texels().as_flattened()));
+        let normals = self.normal_maps.iter().flat_map(NormalMap::texels).flatten();
+        normals.for_each(|c| print.bytes(&c.to_le_bytes()));
         self.lights.describe_sky(&mut print);
         print.bytes(format!("{:?} {} {}", self.view, self.film.width, self.film.height).as_bytes());
         print.text()
@@ -256,7 +263,7 @@ impl World {
             let none = Vec3::new(0.0, 0.0, 0.0);
             self.normals.extend(turned.chain(std::iter::repeat(none)).take(count));
         }
-        if self.plan.textures || self.plan.tangents {
+        if self.plan.uvs() {
             let uvs = mesh.uvs.iter().flatten().copied();
             self.uvs.extend(uvs.chain(std::iter::repeat([0.0; 2])).take(count));
         }

@@ -1,4 +1,5 @@
-//! The report on a terminal: one line per instrument, then what failed, then the sums.
+//! The report on a terminal: one line per instrument, then what failed, then the sums. Where `--only` asks for few rows,
+//! each is printed with what it found.
 
 use super::grade::{groups, severity, short, verdict, worst};
 use super::report::Report;
@@ -6,6 +7,8 @@ use gonio_lab::{Check, Outcome};
 
 /// Failing rows that are printed; the rest is in the report.
 const SHOWN: usize = 30;
+/// Rows that are printed one by one, if no more were asked for.
+const FEW: usize = 64;
 /// Longest meaning that fits the table.
 const MEANING: usize = 36;
 
@@ -39,6 +42,9 @@ pub(super) fn text(report: &Report) -> String {
         );
     }
     out.push('\n');
+    if report.only.is_some() && report.checks.len() <= FEW {
+        rows(&mut out, &report.checks);
+    }
     let mut failed: Vec<&Check> = report.checks.iter().filter(|check| check.failed()).collect();
     failed.sort_by(|a, b| severity(b).total_cmp(&severity(a)));
     for check in failed.iter().take(SHOWN) {
@@ -60,6 +66,18 @@ pub(super) fn text(report: &Report) -> String {
         }
     }
     out + &format!("{}, {:.1} s\n", report.summary(), report.seconds)
+}
+
+/// What was found where nothing failed.
+fn rows(out: &mut String, checks: &[Check]) {
+    let told = || checks.iter().filter(|check| check.outcome == Outcome::Passed && !check.detail.is_empty());
+    let width = told().map(|check| check.subject.chars().count()).max().unwrap_or(0);
+    for check in told() {
+        *out += &format!("{:width$}  {}\n", check.subject, check.detail);
+    }
+    if told().next().is_some() {
+        out.push('\n');
+    }
 }
 
 fn cut(text: &str) -> String {

@@ -6,7 +6,7 @@ use crate::{colour, direction, some};
 use core::hint::black_box;
 use gonio_kernel::fresnel::Interface;
 use gonio_kernel::microfacet::{Masking, Reach};
-use gonio_kernel::{F32x8, Real, Rgb, Vec3, energy, frame, fresnel, math, microfacet, warp};
+use gonio_kernel::{F32x8, Mask, Mask8, Real, Rgb, Vec3, energy, frame, fresnel, math, microfacet, warp};
 
 /// An argument that the optimiser knows nothing about.
 trait Unknown {
@@ -30,6 +30,16 @@ impl Unknown for Masking {
 impl<R: Real> Unknown for Reach<R> {
     fn unknown() -> Self {
         Self { depth: some(1.4), inverse: some(0.7) }
+    }
+}
+impl Unknown for bool {
+    fn unknown() -> Self {
+        black_box(true)
+    }
+}
+impl Unknown for Mask8 {
+    fn unknown() -> Self {
+        black_box(Mask8::splat(true))
     }
 }
 impl<R: Real> Unknown for [R; 2] {
@@ -81,6 +91,8 @@ macro_rules! functions {
             frame::cos_theta(w: Vec3<R>) -> R;
             frame::sin2_theta(w: Vec3<R>) -> R;
             frame::both_above(wo: Vec3<R>, wi: Vec3<R>) -> Truth;
+            frame::facing(n: Vec3<R>, geometric: Vec3<R>, wo: Vec3<R>) -> Vec3<R>;
+            frame::on_its_side(geometric: Vec3<R>, wi: Vec3<R>, through: Truth) -> Truth;
             fresnel::refracted_cosine(cos_o: R, eta: R) -> R;
             fresnel::interface(cos_o: R, cos_t: R, eta: R) -> Interface<R>;
             fresnel::dielectric(cos_o: R, eta: R) -> R;

@@ -39,7 +39,7 @@ macro_rules! types {
         #[unsafe(export_name = concat!("Frame_", stringify!($real)))]
         #[inline(never)]
         fn frame(n: Vec3<R>, tangent: Vec3<R>, v: Vec3<R>) -> (Vec3<R>, Vec3<R>) {
-            (Frame::from_normal(n).to_local(v), Frame::from_normal_tangent(n, tangent).to_world(v))
+            (Frame::from_normal(n).to_local(v), Frame::from_normal_tangent(n, tangent).tilted(v).to_world(v))
         }
 
         #[unsafe(export_name = concat!("Rgb_", stringify!($real)))]

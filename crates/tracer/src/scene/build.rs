@@ -138,6 +138,12 @@ impl Builder {
             object.meshes.insert(slots.clone(), made);
         }
         let meshes = &object.meshes[&slots];
+        if let Some(material) = self.untilted(meshes) {
+            let why = format!(
+                "\"{name}\" has faces without texture coordinates (vt), which the normal map of \"{material}\" needs"
+            );
+            return Err(blame(why));
+        }
         for &mesh in meshes.iter() {
             for &position in &self.meshes[mesh].positions {
                 let world = transform.transform_point3(DVec3::from_array(position));
@@ -152,6 +158,13 @@ impl Builder {
         let names = object.file.materials.iter().map(|(name, _)| name.clone()).collect();
         self.objects.insert(path.to_path_buf(), object);
         Ok(names)
+    }
+
+    /// A material with a normal map on one of the meshes, if that has no texture coordinates.
+    fn untilted(&self, meshes: &[usize]) -> Option<&str> {
+        let bare = meshes.iter().map(|&mesh| &self.meshes[mesh]).filter(|mesh| mesh.uvs.is_none());
+        let mut materials = bare.flat_map(|mesh| &mesh.materials).map(|&m| &self.materials[m as usize]);
+        materials.find(|material| material.normal_map.is_some()).map(|material| material.name.as_str())
     }
 
     /// Meshes of an OBJ file with these materials.
@@ -272,7 +285,8 @@ impl Builder {
         let base_color = Color::Constant(Rgb::splat(GREY));
         let lobes = vec![LobeSpec { weight: 1.0, model: Model::Diffuse { base_color } }];
         let black = Rgb::splat(0.0);
-        let grey = self.add(Material { name: "grey".to_owned(), lobes, emission: black, two_sided: true })?;
+        let grey =
+            self.add(Material { name: "grey".to_owned(), lobes, emission: black, two_sided: true, normal_map: None })?;
         self.grey = Some(grey);
         Ok(grey)
     }
@@ -307,6 +321,7 @@ impl Builder {
             integrator,
             materials: self.materials,
             textures: self.textures.list,
+            normal_maps: self.textures.normal_maps,
             meshes: self.meshes,
             instances: self.instances,
             environment,

@@ -9,12 +9,14 @@ use super::error::quoted;
 use super::textures::Textures;
 use super::{
     Color, Compensation, Directional, Distribution, FresnelSpec, LobeSpec, MAX_RADIANCE, MIN_ALPHA, Masking, Material,
-    MicrofacetSpec, Model, PhongNorm, SceneError, paths,
+    MicrofacetSpec, Model, NormalMapSpec, PhongNorm, SceneError, paths,
 };
 use gonio_kernel::metal::Metal;
 
 /// Largest number of lobes of one material.
 const MAX_LOBES: usize = 4;
+/// Largest factor on the slopes of a normal map.
+const MAX_NORMAL_SCALE: f64 = 10.0;
 /// Largest width of microfacets.
 const MAX_ALPHA: f64 = 1.0;
 
@@ -38,6 +40,7 @@ impl Material {
 pub(super) fn read(name: &str, table: &Table<'_>, mut textures: Option<&mut Textures>) -> Result<Material, SceneError> {
     let emission = optional(table.get("emission"), |v| v.rgb(0.0..=MAX_RADIANCE))?.unwrap_or(Rgb::splat(0.0));
     let two_sided = optional(table.get("two_sided"), |v| v.boolean())?.unwrap_or(true);
+    let normal_map = normal_map(table, textures.as_deref_mut())?;
     let kind = kind(table)?;
     let lobes = if kind == "mix" {
         let value = table.get("lobes").ok_or_else(|| table.error("a mix needs \"lobes\", an array of tables"))?;
@@ -64,7 +67,7 @@ pub(super) fn read(name: &str, table: &Table<'_>, mut textures: Option<&mut Text
             format!("{} reflects {} of the light; the sum over its lobes is at most 1", table.name(), sum.largest());
         return Err(table.error(text));
     }
-    Ok(Material { name: name.to_owned(), lobes, emission, two_sided })
+    Ok(Material { name: name.to_owned(), lobes, emission, two_sided, normal_map })
 }
 
 fn kind<'d>(table: &Table<'d>) -> Result<&'d str, SceneError> {
@@ -213,14 +216,33 @@ fn color(value: Option<Value<'_>>, default: f32, textures: Option<&mut Textures>
     let file = table.get("texture").ok_or_else(|| table.error("a colour table needs \"texture\""))?;
     let scale = optional(table.get("scale"), |v| v.rgb(0.0..=1.0))?.unwrap_or(Rgb::splat(1.0));
     table.finish()?;
+    Ok(Color::Texture { texture: image(&file, textures, Textures::load)?, scale })
+}
+
+/// `normal_map = "file.png"`, and how steep it is.
+fn normal_map(table: &Table<'_>, textures: Option<&mut Textures>) -> Result<Option<NormalMapSpec>, SceneError> {
+    let (file, scale) = (table.get("normal_map"), table.get("normal_scale"));
+    let Some(file) = file else {
+        return scale.map_or(Ok(None), |scale| Err(scale.error("\"normal_scale\" needs a \"normal_map\"")));
+    };
+    let scale = optional(scale, |v| v.number(0.0..=MAX_NORMAL_SCALE))?.unwrap_or(1.0) as f32;
+    let map = image(&file, textures, Textures::load_normals)?;
+    Ok(Some(NormalMapSpec { map, scale }))
+}
+
+/// The index of the image that a value names.
+fn image(
+    file: &Value<'_>,
+    textures: Option<&mut Textures>,
+    load: impl Fn(&mut Textures, &Path) -> Result<usize, SceneError>,
+) -> Result<usize, SceneError> {
     let Some(textures) = textures else {
         return Err(file.error("an image is only possible in a scene file"));
     };
     let name = file.string()?;
     let path = paths::find(file.document().path, name)
         .ok_or_else(|| file.error(format!("the image \"{name}\" does not exist")))?;
-    let texture = textures.load(&path).map_err(|error| file.error(error.to_string()))?;
-    Ok(Color::Texture { texture, scale })
+    load(textures, &path).map_err(|error| file.error(error.to_string()))
 }
 
 /// The most that a model reflects at normal incidence.

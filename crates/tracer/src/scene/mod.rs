@@ -11,6 +11,7 @@ use std::path::Path;
 use glam::{DAffine3, DVec3};
 use gonio_kernel::Rgb;
 
+use crate::normal_map::NormalMap;
 use crate::texture::Texture;
 
 mod build;
@@ -115,6 +116,8 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Decoded images; [`Color::Texture`] names them by index.
     pub textures: Vec<Texture>,
+    /// Decoded images of normals; [`NormalMapSpec`] names them by index.
+    pub normal_maps: Vec<NormalMap>,
     /// Triangle meshes, each in its own coordinates. Never empty.
     pub meshes: Vec<Mesh>,
     /// Meshes placed in the world. Never empty.
@@ -173,6 +176,17 @@ pub struct Material {
     pub emission: Rgb<f32>,
     /// Whether the back scatters like the front; a one-sided material is black from behind.
     pub two_sided: bool,
+    /// An image that tilts the shading normal; its meshes then have texture coordinates.
+    pub normal_map: Option<NormalMapSpec>,
+}
+
+/// An image of normals, and how steep it is taken to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NormalMapSpec {
+    /// Index into [`Scene::normal_maps`].
+    pub map: usize,
+    /// Factor on the normals' x and y, in [0, 10].
+    pub scale: f32,
 }
 
 /// A lobe and its share.

@@ -102,7 +102,7 @@ impl Library {
             let model = reflection(f0, illum, &mtl, unknown("Pr"), unknown("Pm"), unknown("aniso"));
             lobes.push(LobeSpec { weight: 1.0, model });
         }
-        Ok(Material { name, lobes, emission, two_sided: true })
+        Ok(Material { name, lobes, emission, two_sided: true, normal_map: None })
     }
 
     /// Notes every statement that `convert` does not read.
