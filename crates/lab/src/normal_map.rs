@@ -147,7 +147,7 @@ pub(crate) fn measure(rules: Rules, white: White, tilt: f64, run: &Run) -> Findi
             if matches!(lobe, AnyLobe::Lambert(_)) && (albedo - kept - exact).abs() + (albedo - 1.0).abs() > 2.0 * off {
                 finding.broken(|| format!("{name}: {} of {albedo} is lost, exactly it is {exact}", albedo - kept));
             }
-            let samples = run.by_effort(20_000, 200_000, 2_000_000);
+            let samples = run.by_effort(100_000, 400_000, 2_000_000);
             let mean = seen.sampled(&surface, samples, &mut random);
             let reach = anatomy::largest_weight(&lobe).max(1.0);
             let p = bennett_p((mean - kept).abs() - off, samples as f64, square - kept * kept + off, reach);

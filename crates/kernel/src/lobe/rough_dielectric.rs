@@ -124,7 +124,10 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
         let refracted = (m * cos_m.mul_add(thin, -cos_t) - up * thin).normalize_or(-Vec3::unit_z());
         let wi = turned(wo, Vec3::select(reflects, reflect(up, m), refracted));
         let side = wo.z * wi.z;
-        let right_side = (side.gt(R::ZERO) & reflects) | (side.lt(R::ZERO) & !reflects & at.transmitted.gt(R::ZERO));
+        // A facet seen so edge-on that rounding decides which of its sides is seen transmits next to nothing: it may as well fail.
+        let seen = (cos_m * (eta - R::ONE).abs()).gt((R::ONE + eta) * R::lit(8.0) * R::EPSILON);
+        let refracts = !reflects & seen & at.transmitted.gt(R::ZERO);
+        let right_side = (side.gt(R::ZERO) & reflects) | (side.lt(R::ZERO) & refracts);
 
         let nothing = self.is_nothing();
         let no_side = wo.z.same(R::ZERO);
