@@ -14,7 +14,7 @@ use crate::geometry::{Geometry, NOTHING, TriangleId};
 use crate::ray::{Hit, Hit8, NO_HIT, Opacity, Ray8, RayKind};
 use crate::triangle::{Beam, Crossing, Intersect, intersect, intersect_fast};
 use few::Few;
-use gonio_kernel::{F32x8, Mask8, Real, U32x8, Vec3};
+use gonio_kernel::{F32x8, Mask8, Real, U32x8, Vec3, each_lane};
 use tree::{Child, Node, Tree};
 
 /// A tree of eight-wide nodes over the triangles of a geometry, or a list of a few.
@@ -57,11 +57,11 @@ impl Accel for Obvhs {
         "obvhs"
     }
 
-    fn closest(&self, _kind: RayKind, rays: &[Ray8], hits: &mut [Hit8]) {
+    fn closest(&self, kind: RayKind, rays: &[Ray8], hits: &mut [Hit8]) {
         match &self.0 {
             Structure::List(few) => few.closest(rays, hits),
-            Structure::Tree(tree, Intersect::Robust) => tree.closest::<false>(rays, hits),
-            Structure::Tree(tree, Intersect::Fast) => tree.closest::<true>(rays, hits),
+            Structure::Tree(tree, Intersect::Robust) => tree.closest::<false>(kind, rays, hits),
+            Structure::Tree(tree, Intersect::Fast) => tree.closest::<true>(kind, rays, hits),
         }
     }
 
@@ -105,98 +105,156 @@ fn test<const FAST: bool>(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: f32, t
     if FAST { intersect_fast(beam, corners, t_min, t_max) } else { intersect(beam, corners, t_min, t_max) }
 }
 
+/// A ray on its way through the tree.
+struct Walk {
+    beam: Beam,
+    up: [bool; 3],
+    t_min: f32,
+    /// The best hit so far; t_max before there is one.
+    t_best: f32,
+    best: Hit,
+    best_index: u32,
+    /// Subtrees still to be visited, the next one last.
+    stack: Vec<Entry>,
+}
+
+impl Walk {
+    /// Back to the root, with another ray.
+    fn start(&mut self, beam: Beam, t_min: f32, t_max: f32, root: Child) {
+        (self.beam, self.up, self.t_min, self.t_best) = (beam, beam.points_up(), t_min, t_max);
+        (self.best, self.best_index) = (MISS, NO_HIT);
+        self.stack.clear();
+        self.stack.push((f32::NEG_INFINITY, root));
+    }
+}
+
 impl Tree {
-    fn closest<const FAST: bool>(&self, rays: &[Ray8], hits: &mut [Hit8]) {
-        let mut stack = Vec::with_capacity(self.stack_size());
+    /// Eight walks that take turns, one step each: while the memory fetches the node of one, the others go on.
+    fn walks(&self) -> [Walk; F32x8::LANES] {
+        let nowhere = Vec3::splat(F32x8::ONE);
+        let beam = Beam::new(nowhere, nowhere, self.lo, self.hi);
+        each_lane(|_| Walk {
+            beam,
+            up: [true; 3],
+            t_min: 0.0,
+            t_best: 0.0,
+            best: MISS,
+            best_index: NO_HIT,
+            stack: Vec::with_capacity(self.stack_size()),
+        })
+    }
+
+    fn closest<const FAST: bool>(&self, kind: RayKind, rays: &[Ray8], hits: &mut [Hit8]) {
+        let mut walks = self.walks();
         for (ray, hit) in rays.iter().zip(hits) {
             let beam = Beam::new(ray.origin, ray.dir, self.lo, self.hi);
             let mut found = [MISS; F32x8::LANES];
             for_each_lane(ray.mask, |lane| {
-                let (one, t_min, t_max) = (beam.splat_lane(lane), ray.t_min.lane(lane), ray.t_max.lane(lane));
-                found[lane] = self.closest_of_one::<FAST>(&one, t_min, t_max, &mut stack);
+                walks[lane].start(beam.splat_lane(lane), ray.t_min.lane(lane), ray.t_max.lane(lane), self.root);
+            });
+            match kind {
+                RayKind::Coherent => for_each_lane(ray.mask, |lane| while self.step::<FAST>(&mut walks[lane]) {}),
+                RayKind::Incoherent => {
+                    let mut live = ray.mask.to_bits();
+                    while live != 0 {
+                        let mut bits = live;
+                        while bits != 0 {
+                            let lane = bits.trailing_zeros() as usize & 7;
+                            bits &= bits - 1;
+                            if !self.step::<FAST>(&mut walks[lane]) {
+                                live &= !(1 << lane);
+                            }
+                        }
+                    }
+                }
+            }
+            for_each_lane(ray.mask, |lane| {
+                let walk = &walks[lane];
+                if walk.best_index != NO_HIT {
+                    let TriangleId { prim, mesh, instance } = self.order.id(walk.best_index);
+                    found[lane] = Hit { prim, mesh, instance, ..walk.best };
+                }
             });
             *hit = side_by_side(&found);
         }
     }
 
-    fn occluded<const FAST: bool>(&self, rays: &[Ray8], filter: Option<&dyn Opacity>, blocked: &mut [Mask8]) {
-        let mut stack = Vec::with_capacity(self.stack_size());
-        for ((packet, ray), blocked) in rays.iter().enumerate().zip(blocked) {
-            let beam = Beam::new(ray.origin, ray.dir, self.lo, self.hi);
-            let mut bits = 0;
-            for_each_lane(ray.mask, |lane| {
-                let one = beam.splat_lane(lane);
-                let filter = filter.map(|f| (f, packet * F32x8::LANES + lane));
-                let (t_min, t_max) = (ray.t_min.lane(lane), ray.t_max.lane(lane));
-                bits |= u32::from(self.one_is_occluded::<FAST>(&one, t_min, t_max, filter, &mut stack)) << lane;
-            });
-            *blocked = Mask8::from_bits(bits);
-        }
-    }
-
-    fn closest_of_one<const FAST: bool>(&self, beam: &Beam, t_min: f32, t_max: f32, stack: &mut Vec<Entry>) -> Hit {
-        let mut best = MISS;
-        let mut best_index = NO_HIT;
-        let mut t_best = t_max;
-        let up = beam.points_up();
-        let slack = beam.slack();
-        stack.clear();
-        stack.push((f32::NEG_INFINITY, self.root));
-        while let Some((t_near, child)) = stack.pop() {
+    /// Visits the next subtree of a ray that looks for its nearest hit; false if that was the last one.
+    #[inline(always)]
+    fn step<const FAST: bool>(&self, walk: &mut Walk) -> bool {
+        let slack = walk.beam.slack();
+        while let Some((t_near, child)) = walk.stack.pop() {
             // Not ≥: a tie may lie behind this box and have the smaller index.
-            if t_near > t_best + slack {
+            if t_near > walk.t_best + slack {
                 continue;
             }
             match self.open(child) {
-                tree::Opened::Node(node) => push_children(node, beam, up, t_min - slack, t_best + slack, stack),
+                tree::Opened::Node(node) => {
+                    push_children(node, &walk.beam, walk.up, walk.t_min - slack, walk.t_best + slack, &mut walk.stack);
+                }
                 tree::Opened::Leaf(leaf) => {
-                    let c = test::<FAST>(beam, &leaf.corners, t_min, t_best);
+                    let c = test::<FAST>(&walk.beam, &leaf.corners, walk.t_min, walk.t_best);
                     for_each_lane(c.mask, |lane| {
                         let (t, index) = (c.t.lane(lane), leaf.index[lane]);
-                        if t < best.t || (t == best.t && index < best_index) {
-                            best = scalar_hit(&c, lane, NOTHING);
-                            best_index = index;
-                            t_best = t;
+                        if t < walk.best.t || (t == walk.best.t && index < walk.best_index) {
+                            walk.best = scalar_hit(&c, lane, NOTHING);
+                            walk.best_index = index;
+                            walk.t_best = t;
                         }
                     });
                 }
             }
+            return !walk.stack.is_empty();
         }
-        if best_index != NO_HIT {
-            let TriangleId { prim, mesh, instance } = self.order.id(best_index);
-            best = Hit { prim, mesh, instance, ..best };
-        }
-        best
+        false
     }
 
-    fn one_is_occluded<const FAST: bool>(
-        &self,
-        beam: &Beam,
-        t_min: f32,
-        t_max: f32,
-        filter: Option<(&dyn Opacity, usize)>,
-        stack: &mut Vec<Entry>,
-    ) -> bool {
-        let up = beam.points_up();
-        let slack = beam.slack();
-        stack.clear();
-        stack.push((f32::NEG_INFINITY, self.root));
-        while let Some((_, child)) = stack.pop() {
-            match self.open(child) {
-                tree::Opened::Node(node) => push_children(node, beam, up, t_min - slack, t_max + slack, stack),
-                tree::Opened::Leaf(leaf) => {
-                    let c = test::<FAST>(beam, &leaf.corners, t_min, t_max);
-                    let blocks = |lane: usize| match filter {
-                        None => true,
-                        Some((f, ray)) => f.blocks(ray, &scalar_hit(&c, lane, self.order.id(leaf.index[lane]))),
-                    };
-                    let mut bits = c.mask.to_bits();
-                    while bits != 0 {
-                        if blocks(bits.trailing_zeros() as usize) {
-                            return true;
-                        }
-                        bits &= bits - 1;
+    fn occluded<const FAST: bool>(&self, rays: &[Ray8], filter: Option<&dyn Opacity>, blocked: &mut [Mask8]) {
+        let mut walks = self.walks();
+        for ((packet, ray), blocked) in rays.iter().enumerate().zip(blocked) {
+            let beam = Beam::new(ray.origin, ray.dir, self.lo, self.hi);
+            for_each_lane(ray.mask, |lane| {
+                walks[lane].start(beam.splat_lane(lane), ray.t_min.lane(lane), ray.t_max.lane(lane), self.root);
+            });
+            let (mut live, mut shut) = (ray.mask.to_bits(), 0);
+            while live != 0 {
+                let mut bits = live;
+                while bits != 0 {
+                    let lane = bits.trailing_zeros() as usize & 7;
+                    bits &= bits - 1;
+                    let filter = filter.map(|f| (f, packet * F32x8::LANES + lane));
+                    let hit = self.step_to_any::<FAST>(&mut walks[lane], filter);
+                    shut |= u32::from(hit) << lane;
+                    if hit || walks[lane].stack.is_empty() {
+                        live &= !(1 << lane);
                     }
+                }
+            }
+            *blocked = Mask8::from_bits(shut);
+        }
+    }
+
+    /// Visits the next subtree of a ray that looks for any hit: whether it found one.
+    #[inline(always)]
+    fn step_to_any<const FAST: bool>(&self, walk: &mut Walk, filter: Option<(&dyn Opacity, usize)>) -> bool {
+        let (slack, t_max) = (walk.beam.slack(), walk.t_best);
+        let Some((_, child)) = walk.stack.pop() else { return false };
+        match self.open(child) {
+            tree::Opened::Node(node) => {
+                push_children(node, &walk.beam, walk.up, walk.t_min - slack, t_max + slack, &mut walk.stack);
+            }
+            tree::Opened::Leaf(leaf) => {
+                let c = test::<FAST>(&walk.beam, &leaf.corners, walk.t_min, t_max);
+                let blocks = |lane: usize| match filter {
+                    None => true,
+                    Some((f, ray)) => f.blocks(ray, &scalar_hit(&c, lane, self.order.id(leaf.index[lane]))),
+                };
+                let mut bits = c.mask.to_bits();
+                while bits != 0 {
+                    if blocks(bits.trailing_zeros() as usize) {
+                        return true;
+                    }
+                    bits &= bits - 1;
                 }
             }
         }
@@ -207,10 +265,11 @@ impl Tree {
 /// Pushes the children whose boxes the ray enters, the nearest last.
 #[inline(always)]
 fn push_children(node: &Node, beam: &Beam, up: [bool; 3], t_min: f32, t_max: f32, stack: &mut Vec<Entry>) {
-    let [lo, hi] = node.planes;
-    let pick = |up: bool, a: F32x8, b: F32x8| if up { (a, b) } else { (b, a) };
-    let (x, y, z) = (pick(up[0], lo.x, hi.x), pick(up[1], lo.y, hi.y), pick(up[2], lo.z, hi.z));
-    let [near, far] = beam.slab(Vec3::new(x.0, y.0, z.0), Vec3::new(x.1, y.1, z.1));
+    // Indices, not branches: rays that take turns point to different sides.
+    let [x, y, z] = up.map(usize::from);
+    let (planes, flip) = (&node.planes, 1);
+    let near = Vec3::new(planes[flip - x].x, planes[flip - y].y, planes[flip - z].z);
+    let [near, far] = beam.slab(near, Vec3::new(planes[x].x, planes[y].y, planes[z].z));
     let entered = near.le(far) & near.le(F32x8::splat(t_max)) & far.ge(F32x8::splat(t_min));
     let mut bits = entered.to_bits();
     let near = near.to_array();
