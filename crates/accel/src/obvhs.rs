@@ -2,7 +2,12 @@
 //!
 //! `obvhs` builds a binary tree (PLOC with reinsertion); `obvhs/tree.rs` collapses it into nodes of eight children whose
 //! boxes lie side by side, over blocks of eight triangles side by side. One ray is tested against eight boxes or eight
-//! triangles at a time. So few triangles that a tree does not pay ([`few`]) are kept in a list. The traversal of `obvhs` itself is not used: it is several times slower and its triangle test leaks.
+//! triangles at a time. So few triangles that a tree does not pay ([`few`]) are kept in a list. The traversal of `obvhs`
+//! itself is not used: it is several times slower and its triangle test leaks.
+//!
+//! **Order.** A ray that looks for its nearest hit visits the nearest child first; one that looks for any hit visits the
+//! largest first, where anything is most likely to be met. Incoherent rays take turns, eight in flight, one step
+//! each: while the memory fetches one's node, the others go on. None of this changes a result.
 
 mod few;
 mod parts;
@@ -190,7 +195,8 @@ impl Tree {
             }
             match self.open(child) {
                 tree::Opened::Node(node) => {
-                    push_children(node, &walk.beam, walk.up, walk.t_min - slack, walk.t_best + slack, &mut walk.stack);
+                    let which = entered(node, &walk.beam, walk.up, walk.t_min - slack, walk.t_best + slack);
+                    push_nearest(node, which, &mut walk.stack);
                 }
                 tree::Opened::Leaf(leaf) => {
                     let c = test::<FAST>(&walk.beam, &leaf.corners, walk.t_min, walk.t_best);
@@ -241,7 +247,8 @@ impl Tree {
         let Some((_, child)) = walk.stack.pop() else { return false };
         match self.open(child) {
             tree::Opened::Node(node) => {
-                push_children(node, &walk.beam, walk.up, walk.t_min - slack, t_max + slack, &mut walk.stack);
+                let (bits, _) = entered(node, &walk.beam, walk.up, walk.t_min - slack, t_max + slack);
+                push_largest(node, bits, &mut walk.stack);
             }
             tree::Opened::Leaf(leaf) => {
                 let c = test::<FAST>(&walk.beam, &leaf.corners, walk.t_min, t_max);
@@ -262,16 +269,21 @@ impl Tree {
     }
 }
 
-/// Pushes the children whose boxes the ray enters, the nearest last.
+/// Which children's boxes the ray enters, as bits, and where.
 #[inline(always)]
-fn push_children(node: &Node, beam: &Beam, up: [bool; 3], t_min: f32, t_max: f32, stack: &mut Vec<Entry>) {
+fn entered(node: &Node, beam: &Beam, up: [bool; 3], t_min: f32, t_max: f32) -> (u32, F32x8) {
     // Indices, not branches: rays that take turns point to different sides.
     let [x, y, z] = up.map(usize::from);
     let (planes, flip) = (&node.planes, 1);
     let near = Vec3::new(planes[flip - x].x, planes[flip - y].y, planes[flip - z].z);
     let [near, far] = beam.slab(near, Vec3::new(planes[x].x, planes[y].y, planes[z].z));
     let entered = near.le(far) & near.le(F32x8::splat(t_max)) & far.ge(F32x8::splat(t_min));
-    let mut bits = entered.to_bits();
+    (entered.to_bits(), near)
+}
+
+/// Pushes the children whose boxes the ray enters, the nearest last.
+#[inline(always)]
+fn push_nearest(node: &Node, (mut bits, near): (u32, F32x8), stack: &mut Vec<Entry>) {
     let near = near.to_array();
     let first = stack.len();
     while bits != 0 {
@@ -286,5 +298,15 @@ fn push_children(node: &Node, beam: &Beam, up: [bool; 3], t_min: f32, t_max: f32
             at -= 1;
         }
         stack[at] = entry;
+    }
+}
+
+/// Pushes the children whose boxes the ray enters, the largest last, which is where anything is most likely to be met.
+#[inline(always)]
+fn push_largest(node: &Node, mut bits: u32, stack: &mut Vec<Entry>) {
+    while bits != 0 {
+        let slot = 31 - bits.leading_zeros() as usize;
+        bits &= !(1 << slot);
+        stack.push((0.0, node.children[slot & 7]));
     }
 }

@@ -8,9 +8,9 @@ pub const NO_HIT: u32 = u32::MAX;
 /// How alike neighbouring rays are; a hint that chooses a traversal, never a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RayKind {
-    /// Neighbours start together and point the same way: camera rays.
+    /// Neighbours start together and point the same way: camera rays, which meet the same nodes one after the other.
     Coherent,
-    /// Anything else: bounces, shadow rays.
+    /// Anything else: bounces, shadow rays, each with a way of its own through the memory.
     Incoherent,
 }
 

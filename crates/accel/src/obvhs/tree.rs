@@ -23,7 +23,7 @@ pub(super) struct Child(u32);
 
 const LEAF: u32 = 1 << 31;
 
-/// Eight children, their boxes side by side. An unused slot has an inverted infinite box, which no ray enters.
+/// Eight children, their boxes side by side, the largest first. An unused slot has an inverted infinite box, which no ray enters.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
     /// Lower and upper planes.
@@ -214,7 +214,7 @@ impl<'a> Collapse<'a> {
         Child(root as u32)
     }
 
-    /// The binary nodes that become the children of the wide node for `node`.
+    /// The binary nodes that become the children of the wide node for `node`, the largest first.
     fn children_of(&self, node: usize) -> Vec<usize> {
         let area = |n: usize| self.binary.nodes[n].aabb.half_area();
         let mut children = inner(self.binary, node).map_or(vec![node], Vec::from);
@@ -232,6 +232,7 @@ impl<'a> Collapse<'a> {
             children[i] = a;
             children.push(b);
         }
+        children.sort_by(|&a, &b| area(b).total_cmp(&area(a)));
         children
     }
 }
