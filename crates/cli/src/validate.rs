@@ -40,7 +40,7 @@ pub(crate) struct Args {
     /// A minute or two: every instrument and row, small samples
     #[arg(long, conflicts_with = "full")]
     quick: bool,
-    /// As many samples as the smallest faults need, every bit pattern of elementary functions: most of an hour
+    /// Samples that find a density off by 2 % over 5 % of the directions, every bit pattern of elementary functions: most of an hour
     #[arg(long)]
     full: bool,
     /// Only the instrument of this name, or checks whose subject contains this text

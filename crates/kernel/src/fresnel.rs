@@ -2,6 +2,7 @@
 //!
 //! Cosines are those between the direction and the (micro)normal, on wo's side. Results lie in [0, 1].
 
+use crate::energy::facet_cosines;
 use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
 
@@ -72,8 +73,8 @@ pub(crate) fn conductor_rgb<R: Real>(cos_o: R, cos2_o: R, eta: Rgb<R>, k: Rgb<R>
     let inverse = product.recip();
     let (over_rg, over_b) = (b.1 * inverse, rg * inverse);
     let mut reflectance = Rgb::new(r.0 * (g.1 * over_rg), g.0 * (r.1 * over_rg), b.0 * over_b);
-    // Denominators span up to 60 decades near matched indices at grazing: where their product leaves `f32`, one by one. Each is
-    // below 10¹⁴, so a product of three above 10⁻¹⁸ has no factor that is lost.
+    // Denominators lie between 10⁻³² and 10¹³, the least at critical angles: where their product leaves `f32`, one by one. A
+    // product of three above 10⁻¹⁸ has none below 10⁻³², and none of two.
     let ordinary = product.gt(R::lit(1e-18)) & product.lt(R::lit(1e38));
     if !ordinary.all() {
         reflectance = Rgb::select(ordinary, reflectance, Rgb::new(r.0 / r.1, g.0 / g.1, b.0 / b.1));
@@ -103,7 +104,7 @@ impl<R: Real> ConductorAngle<R> {
     /// With s² = (|a² + b²| + |t|)/2 and t = a² − b² = η² − k² − sin²θ, as = s² and bs = ηk where t ≥ 0, the other way round
     /// elsewhere: neither a nor b is formed by subtraction, and multiplied by s no division is left.
     /// (R⊥ + R∥)/2 = ((as − s cosθ)² + (bs)²) q / ((sp + 2as cosθ)(sq + 2as cosθ sin²θ)) with p = a² + b² + cos²θ and
-    /// q = (a² + b²)cos²θ + sin⁴θ; here with √2 s and all of it times 4. Only as − s cosθ cancels, for η near 1 and small k,
+    /// q = (a² + b²)cos²θ + sin⁴θ; here with √2 s and both times 2. Only as − s cosθ cancels, for η near 1 and small k,
     /// where nothing else could say how much is reflected.
     #[inline(always)]
     fn fraction(self, eta: R, k: R) -> (R, R) {
@@ -203,6 +204,13 @@ impl<R: Real> Fresnel<R> {
             }
             Self::Dielectric { eta } => Rgb::splat(dielectric(cos_o, eta)),
         }
+    }
+
+    /// The mean reflectance of the facets that light meets which is scattered more than once: see [`facet_cosines`].
+    #[inline(always)]
+    pub fn of_facets(&self, alpha: R, cos_o: R, cos_i: R) -> Rgb<R> {
+        let [steep, flat] = facet_cosines(alpha, cos_o, cos_i).map(|cos| self.reflectance(cos));
+        (steep + flat) * R::lit(0.5)
     }
 
     /// Whether every parameter lies in its domain.

@@ -351,7 +351,16 @@ mod tests {
         sum += b;
         product *= b;
         let sums = [a + b, a - b, a * b, a / b, -a, sum, product, a.mul_add(b, c), a.sqr(), a.recip()];
-        let others = [a.sqrt(), a.abs(), a.min(b), a.max(b), a.copysign(b), a.clamp(-1.5, 0.5), a.or_zero(mask)];
+        let others = [
+            a.sqrt(),
+            a.abs(),
+            a.min(b),
+            a.max(b),
+            a.copysign(b),
+            a.clamp(-1.5, 0.5),
+            a.or_zero(mask),
+            a.negated(mask),
+        ];
         let chosen = [R::select(mask, a, c), R::select(!mask, a, c), a.round_to_int().0, R::lit(0.1), R::ZERO, R::ONE];
         let (mantissa, exponent) = a.split_exponent();
         let bits = [mantissa, exponent, a.ldexp(b.round_to_int().1)];
@@ -365,7 +374,7 @@ mod tests {
     fn truths<R: Real>([a, b, c]: [R; 3]) -> Vec<R::Mask> {
         let (x, y) = (a.round_to_int().1, b.round_to_int().1);
         let (lt, le) = (a.lt(b), b.le(c));
-        let compared = [lt, le, a.gt(b), a.ge(b), a.same(b), a.is_finite(), !lt, lt & le, lt | le];
+        let compared = [lt, le, a.gt(b), a.ge(b), a.same(b), a.is_finite(), !lt, lt & le, lt | le, lt ^ le];
         let whole = [R::int_bit(x, 0), R::int_bit(x, 1), R::int_bit(x, 21), R::int_same(x, y)];
         let chosen = [R::int_same(R::int_select(lt, x, R::int(3)), y), R::Mask::splat(true), R::Mask::splat(false)];
         compared.into_iter().chain(whole).chain(chosen).collect()

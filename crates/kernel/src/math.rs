@@ -90,14 +90,13 @@ fn polynomial<R: Real>(x: R, coefficients: &[f64]) -> R {
 #[inline(always)]
 fn long_polynomial<R: Real>(x: R, coefficients: &[f64]) -> R {
     let z = x * x;
-    // From the highest power down, sums take turns; the constant ends up in `even`.
-    let (mut even, mut odd) = (R::ZERO, R::ZERO);
+    // From the highest power down the two sums take turns, and the last one holds the constant.
+    let (mut before, mut last) = (R::ZERO, R::ZERO);
     for (i, &c) in coefficients.iter().enumerate() {
-        let sum = if i < 2 { R::lit(c) } else { even.mul_add(z, R::lit(c)) };
-        (even, odd) = (odd, sum);
+        let sum = if i < 2 { R::lit(c) } else { before.mul_add(z, R::lit(c)) };
+        (before, last) = (last, sum);
     }
-    // Each turn swapped the two: the last one set is `odd`.
-    even.mul_add(x, odd)
+    before.mul_add(x, last)
 }
 
 #[inline(always)]

@@ -8,9 +8,10 @@ use serde::Serialize;
 pub enum Effort {
     /// A minute or two: every instrument and row, small samples.
     Quick,
-    /// Ten times the samples.
+    /// Up to twelve times the samples, where samples are what finds faults.
     Standard,
-    /// As many samples as the smallest faults need, every bit pattern of elementary functions; most of an hour.
+    /// As many samples as find a density that is off by 2 % over 5 % of the directions, in each view, fifty million pairs per
+    /// model, every bit pattern of elementary functions; most of an hour.
     Full,
 }
 

@@ -59,8 +59,8 @@ pub(crate) fn tasks() -> Vec<Task<'static>> {
         planted("normal left facing away", "frames", |run| frames::measure_facing(|n, _, _| n, run)),
         planted("geometric normal where the other faces away", "frames", |run| {
             let wrong: frames::Face = |n, geometric, wo| {
-                let turned = if n.dot(wo) > 0.0 { n } else { geometric };
-                if turned.dot(wo) > 0.0 { turned } else { wo }
+                let least = geometric.dot(wo).min(gonio_kernel::frame::GRAZING as f32);
+                if n.dot(wo) >= least { n } else { geometric }
             };
             frames::measure_facing(wrong, run)
         }),

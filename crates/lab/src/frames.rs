@@ -88,7 +88,8 @@ pub(crate) fn measure_facing(face: Face, run: &Run) -> Finding {
         if usable && seen >= least && shown != n {
             finding.broken(|| format!("turned although it can be seen: {}", text()));
         }
-        if usable && seen < least && shown != geometric.z {
+        // Where viewer and normal both lie in the horizon the sum may cancel, and the geometric normal must do.
+        if usable && seen < least && (least >= 32.0 * f32::EPSILON || shown != geometric.z) {
             turned += 1;
             let [n, wo, shown] = [n, wo, shown].map(crate::probe::promote);
             let sum = n + wo * (f64::from(least) - n.dot(wo));

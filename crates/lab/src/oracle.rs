@@ -1,4 +1,4 @@
-//! The oracle: reflectance by the book, in plain `f64`, without a line of the kernel.
+//! The oracle: reflectance by the book, in plain `f64`, without a line of the kernel but for the losses of `energy`.
 //!
 //! It shares no arrangement with the kernel: half vectors are normalised, D and Λ are in their tan²θ forms (Walter et al.
 //! 2007; Heitz 2014; PBR book, section 9.6), conductors use complex arithmetic, dielectrics Snell's angles. So an error that the
@@ -99,7 +99,7 @@ pub(crate) fn separable(p: &[f64], wo: Dir, wi: Dir) -> Worth {
 }
 
 /// Schlick's Fresnel with Kulla & Conty's lobe: alpha_x, alpha_y, three f0. The losses are the kernel's (the instrument `walk`
-/// and the tables' own tests hold them to quadrature); the rest is by the book.
+/// and the tables' own tests hold them to quadrature), and so are the fitted constants; the arrangement is not.
 pub(crate) fn kulla_conty(p: &[f64], wo: Dir, wi: Dir) -> Worth {
     let single = schlick(p, wo, wi);
     let alpha = (p[0] * p[1]).sqrt();

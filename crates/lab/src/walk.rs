@@ -13,7 +13,7 @@ use crate::probe::Dir;
 use crate::random::{Random, direction};
 use crate::statistics::mean_p;
 use gonio_kernel::Rgb;
-use gonio_kernel::energy::{Missing, facet_cosines, missing_avg, multiple_fresnel, scattered_again};
+use gonio_kernel::energy::{Missing, missing_avg, multiple_fresnel, scattered_again};
 use gonio_kernel::fresnel::Fresnel;
 use gonio_kernel::microfacet::{Ggx, Reach};
 
@@ -110,10 +110,7 @@ pub(crate) struct Model {
 pub(crate) const KERNEL: Model = Model {
     missing: |cos, alpha| Missing::of(alpha).at(cos),
     missing_avg,
-    facets: |fresnel, alpha, [o, i]| {
-        let [steep, flat] = facet_cosines(alpha, o, i).map(|cos| fresnel.reflectance(cos));
-        (steep + flat) * 0.5
-    },
+    facets: |fresnel, alpha, [o, i]| fresnel.of_facets(alpha, o, i),
     multiple: |f, alpha, [o, i], mean| multiple_fresnel(f, scattered_again(alpha, o, i, mean)),
 };
 

@@ -1,7 +1,7 @@
 //! The weight bound: no sample weighs more than its lobe promises, and f_cos never exceeds that multiple of the density.
 //!
-//! A single lobe of the kernel weighs at most 1, or what its species says. A mixture trades between lobes: its bound is max wᵢ/pᵢ. Both the samples
-//! themselves and random pairs of directions are tried: a density that vanishes where f does not is an infinite weight.
+//! A single lobe of the kernel weighs at most 1, or what `anatomy::largest_weight` says. A mixture trades between lobes: its
+//! bound is max wᵢ/pᵢ. Both the samples themselves and random pairs of directions are tried: a density that vanishes where f does not is an infinite weight.
 //! A stranger's lobe promises nothing, so only infinite weights fail it; the largest is reported.
 
 use crate::directions::show;

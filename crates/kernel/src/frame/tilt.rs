@@ -48,7 +48,7 @@ impl<R: Real> Frame<R> {
 pub fn facing<R: Real>(n: Vec3<R>, geometric: Vec3<R>, wo: Vec3<R>) -> Vec3<R> {
     let least = R::lit(GRAZING).min(geometric.dot(wo));
     let cos = n.dot(wo);
-    // Its cosine to wo is least/|…|, and |…| ≤ 1 up to GRAZING²: nothing cancels, whatever the angle of n and wo.
+    // Its cosine to wo is least/|…|, and |…| ≤ 1 up to GRAZING². Only n ≈ −wo cancels, both of them in the horizon.
     let turned = n.along(least - cos, wo).normalize();
     let n = Vec3::select(cos.lt(least), turned, n);
     let usable = n.dot(wo).gt(R::ZERO) & n.dot(geometric).gt(R::ZERO);

@@ -18,8 +18,8 @@
 
 use super::{Event, Lobe, Prepared, Properties, Sample, Value};
 use crate::energy::{
-    Compensation, Missing, effective_alpha, facet_cosines, kulla_conty, missing_avg, multiple_fresnel, pdf_multiple,
-    sample_multiple, scattered_again, turquin,
+    Compensation, Missing, effective_alpha, kulla_conty, missing_avg, multiple_fresnel, pdf_multiple, sample_multiple,
+    scattered_again, turquin,
 };
 use crate::frame::both_above;
 use crate::fresnel::Fresnel;
@@ -77,9 +77,10 @@ impl<R: Real> Conductor<R> {
         let alpha = self.width();
         let missing_i = Missing::of(alpha).at(cos_i);
         let again = scattered_again(alpha, missing_o, missing_i, mean);
-        let [steep, flat] = facet_cosines(alpha, cos_o, cos_i).map(|cos| self.fresnel.reflectance(cos));
-        let f = (steep + flat) * R::lit(0.5);
-        let multiple = f.map(|f| kulla_conty(missing_o, missing_i, mean, multiple_fresnel(f, again)));
+        let multiple = self
+            .fresnel
+            .of_facets(alpha, cos_o, cos_i)
+            .map(|f| kulla_conty(missing_o, missing_i, mean, multiple_fresnel(f, again)));
         Value {
             f_cos: single.f_cos + multiple * cos_i,
             pdf: (R::ONE - missing_o).mul_add(single.pdf, missing_o * pdf_multiple(alpha, cos_i)),

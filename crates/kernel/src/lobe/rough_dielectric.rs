@@ -15,7 +15,7 @@
 //! **Nearly equal indices.** As η → 1 refraction narrows to a line straight on, whatever the roughness. Within 10⁻³ of 1
 //! it is that line: all light passes as one discrete event. (It would turn by at most 0.06°, and reflect 2.5·10⁻⁷.)
 //!
-//! Cost of a value: nine divisions and four roots.
+//! Cost of a value with GGX: ten divisions and three roots.
 
 use super::dielectric::relative_index;
 use super::{Event, Lobe, Prepared, Sample, Value};
@@ -49,6 +49,16 @@ impl<R: Real> RoughDielectric<R> {
     /// The same with another masking of reflection.
     pub fn with_masking(self, masking: Masking) -> Self {
         Self { masking, ..self }
+    }
+
+    /// Whether a facet is seen well enough from wo to tell which of its sides is: the half vector of refraction is a difference of
+    /// length |η − 1| at least, whose direction rounding moves by (1 + η)ε/|η − 1|.
+    ///
+    /// What is seen less refracts nothing, in values and samples alike. In `f32` that loses up to 3e-5 of the light on such a
+    /// facet at η = 1.5, but 0.5 % at 1.01 and 16 % at 1.001, where a wo of cosine 1e-3 sees hardly any others.
+    #[inline(always)]
+    fn is_seen(&self, cos_m: R, eta: R, room: f64) -> R::Mask {
+        (cos_m * (eta - R::ONE).abs()).gt((R::ONE + eta) * R::EPSILON * R::lit(room))
     }
 
     #[inline(always)]
@@ -103,7 +113,7 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
             pdf: turning * (eta * eta) * pdf_visible_reflected(R::ONE, reach),
         };
         // Both must see the front of the microfacet: wo from above, a refracted wi from below.
-        let faces = upwards & wo_h.gt(R::ZERO) & wi_h.lt(R::ZERO);
+        let faces = upwards & wi_h.lt(R::ZERO) & self.is_seen(wo_h / h_length, eta, 4.0);
         let ok = c_o.gt(R::ZERO) & c_i.gt(R::ZERO) & !self.is_nothing();
         let f_cos = Rgb::select(through, refracted.f_cos, reflected.f_cos);
         let pdf = R::select(through, refracted.pdf, reflected.pdf);
@@ -124,9 +134,8 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
         let refracted = (m * cos_m.mul_add(thin, -cos_t) - up * thin).normalize_or(-Vec3::unit_z());
         let wi = turned(wo, Vec3::select(reflects, reflect(up, m), refracted));
         let side = wo.z * wi.z;
-        // A facet seen so edge-on that rounding decides which of its sides is seen transmits next to nothing: it may as well fail.
-        let seen = (cos_m * (eta - R::ONE).abs()).gt((R::ONE + eta) * R::lit(8.0) * R::EPSILON);
-        let refracts = !reflects & seen & at.transmitted.gt(R::ZERO);
+        // With twice the room that values have, so that rounding takes none of them away.
+        let refracts = !reflects & self.is_seen(cos_m, eta, 8.0) & at.transmitted.gt(R::ZERO);
         let right_side = (side.gt(R::ZERO) & reflects) | (side.lt(R::ZERO) & refracts);
 
         let nothing = self.is_nothing();

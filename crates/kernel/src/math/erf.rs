@@ -41,7 +41,7 @@ pub fn erf_inv<R: Real>(x: R) -> R {
     x * erf_inv_over(-ln((R::ONE - x) * (R::ONE + x)))
 }
 
-/// [`erf_inv`] of x in \[−1, 1\] that stops where the last number below 1 is half way to it: always finite.
+/// [`erf_inv`] of x in \[−1, 1\], with 1 − x² not below ε/4, half of what it is at the last number below 1: always finite.
 #[inline(always)]
 pub(crate) fn erf_inv_within<R: Real>(x: R) -> R {
     x * erf_inv_over(-ln_normal(((R::ONE - x) * (R::ONE + x)).max(R::EPSILON * R::lit(0.25))))

@@ -1,7 +1,8 @@
 //! Logarithms, and powers through a logarithm of two words.
 //!
 //! x = m·2ᵏ with m in [√½, √2), and with f = m − 1 and s = f/(2 + f): ln m = 2s + s³ P(s²), as in fdlibm's `e_log.c`
-//! (Ng 1993). P is a minimax polynomial by Remez' algorithm with 50 digits, in `f64` one degree above fdlibm's, for `pow`.
+//! (Ng 1993). P is a minimax polynomial by Remez' algorithm with 50 digits, in `f64` one degree above fdlibm's, for `pow`. In
+//! `f32` ln(1 + f) is a polynomial in f, without a division, and P serves `pow` alone.
 
 use super::exp::{exp_of_sum, ln_2};
 use super::{long_polynomial, polynomial};

@@ -13,7 +13,7 @@
 //! with $s(w) = |\cos\theta|\,(1 + 2\Lambda(w))$, from which [`super`] makes masking, shadowing and densities.
 //!
 //! Nothing is formed by subtraction: D comes from the unnormalised half vector, which stays exact near the mirror
-//! direction. Cost: D one division, s one root, a visible normal one division and one root.
+//! direction. Cost: D one division, s one root, its reach two divisions and a root, a visible normal one root.
 
 use super::{Reach, lengthened, widths_in_domain};
 use crate::math::sin_cos_turns;
