@@ -101,7 +101,18 @@ pub(crate) fn separable(p: &[f64], wo: Dir, wi: Dir) -> Worth {
 /// Schlick's Fresnel with Kulla & Conty's lobe: alpha_x, alpha_y, three f0. The losses are the kernel's (the instrument `walk`
 /// and the tables' own tests hold them to quadrature), and so are the fitted constants; the arrangement is not.
 pub(crate) fn kulla_conty(p: &[f64], wo: Dir, wi: Dir) -> Worth {
-    let single = schlick(p, wo, wi);
+    let fresnel = |c: usize, cos: f64| p[2 + c] + (1.0 - p[2 + c]) * (1.0 - cos).powi(5);
+    with_multiple(p, wo, wi, schlick(p, wo, wi), &fresnel)
+}
+
+/// The same of a metal: alpha_x, alpha_y, three η, three k.
+pub(crate) fn metal_kulla_conty(p: &[f64], wo: Dir, wi: Dir) -> Worth {
+    let fresnel = |c: usize, cos: f64| conductor(cos, p[2 + c], p[5 + c]);
+    with_multiple(p, wo, wi, metal(p, wo, wi), &fresnel)
+}
+
+/// Kulla & Conty's lobe beside the single scattering; `fresnel` of a channel and a cosine.
+fn with_multiple(p: &[f64], wo: Dir, wi: Dir, single: Worth, fresnel: &dyn Fn(usize, f64) -> f64) -> Worth {
     let alpha = (p[0] * p[1]).sqrt();
     let missing = energy::Missing::of(alpha);
     let (lost_o, lost_i, lost) = (missing.at(wo.z), missing.at(wi.z), energy::missing_avg(alpha));
@@ -109,8 +120,7 @@ pub(crate) fn kulla_conty(p: &[f64], wo: Dir, wi: Dir) -> Worth {
     let again = (0.68 * lost_o * lost_i / lost).min(0.545 * alpha);
     let cos = ((0.77 * wo.z + 0.56 * alpha) * (0.77 * wi.z + 0.56 * alpha)).sqrt().min(1.0);
     let f_cos = [0, 1, 2].map(|c| {
-        let fresnel = |cos: f64| p[2 + c] + (1.0 - p[2 + c]) * (1.0 - cos).powi(5);
-        let f = 0.5 * (fresnel(cos) + fresnel(0.43 * cos));
+        let f = 0.5 * (fresnel(c, cos) + fresnel(c, 0.43 * cos));
         single.f_cos[c] + f * f * (1.0 - again) / (1.0 - f * again) * wide * wi.z
     });
     let multiple = 1.0 / (2.0 * PI * (wi.z + 4.0 * alpha) * (1.0 + 0.25 / alpha).ln());

@@ -139,6 +139,13 @@ species!(F82, "conductor-f82", f82, oracle::f82, [ALPHA, ALPHA, UNIT, UNIT, UNIT
 species!(SEPARABLE, "conductor-separable", separable, oracle::separable, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
 species!(BECKMANN, "conductor-beckmann", beckmann, oracle::beckmann, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
 species!(KULLA_CONTY, "conductor-kulla-conty", kulla_conty, oracle::kulla_conty, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
+species!(
+    METAL_KULLA_CONTY,
+    "conductor-kulla-conty-metal",
+    metal_kulla_conty,
+    oracle::metal_kulla_conty,
+    [ALPHA, ALPHA, ETA, ETA, ETA, EXTINCTION, EXTINCTION, EXTINCTION]
+);
 species!(TURQUIN, "conductor-turquin", turquin, oracle::turquin, [ALPHA, ALPHA, UNIT, UNIT, UNIT]);
 species!(COAT, "dielectric-reflection", coat, oracle::coat, [ALPHA, ALPHA, INDEX]);
 species!(GLASS, "dielectric", glass, oracle::discrete, [INDEX], Varied::INDEX);
@@ -190,6 +197,10 @@ fn separable<R: Real>(p: &[R]) -> AnyLobe<R> {
 fn turquin<R: Real>(p: &[R]) -> AnyLobe<R> {
     let single = Conductor::new(ggx(p), Fresnel::Schlick { f0: rgb(&p[2..]) });
     single.with_compensation(Compensation::Turquin).into()
+}
+fn metal_kulla_conty<R: Real>(p: &[R]) -> AnyLobe<R> {
+    let fresnel = Fresnel::Conductor { eta: rgb(&p[2..]), k: rgb(&p[5..]) };
+    Conductor::new(ggx(p), fresnel).with_compensation(Compensation::KullaConty).into()
 }
 fn kulla_conty<R: Real>(p: &[R]) -> AnyLobe<R> {
     let single = Conductor::new(ggx(p), Fresnel::Schlick { f0: rgb(&p[2..]) });
@@ -244,7 +255,7 @@ impl InZoo for Eon<f32> {
 }
 impl InZoo for Conductor<f32> {
     const SPECIES: &'static [&'static Species] =
-        &[&METAL, &SCHLICK, &F82, &SEPARABLE, &BECKMANN, &KULLA_CONTY, &TURQUIN, &COAT];
+        &[&METAL, &SCHLICK, &F82, &SEPARABLE, &BECKMANN, &KULLA_CONTY, &METAL_KULLA_CONTY, &TURQUIN, &COAT];
 }
 impl InZoo for Dielectric<f32> {
     const SPECIES: &'static [&'static Species] = &[&GLASS];
@@ -351,6 +362,7 @@ pub(crate) fn rows() -> Vec<Row> {
         row("compensated 0.2x0.2 white", &[(1.0, &KULLA_CONTY, &[0.2, 0.2, 1.0, 1.0, 1.0])]),
         row("compensated 1x1 white", &[(1.0, &KULLA_CONTY, &[1.0, 1.0, 1.0, 1.0, 1.0])]),
         row("compensated 0.6x0.6 gold", &[(1.0, &KULLA_CONTY, &[0.6, 0.6, 0.9, 0.6, 0.3])]),
+        row("compensated 0.3x0.3 gold metal", &[(1.0, &METAL_KULLA_CONTY, &[&[0.3, 0.3], &gold[2..]].concat())]),
         row("compensated 0.3x0.9 white", &[(1.0, &KULLA_CONTY, &[0.3, 0.9, 1.0, 1.0, 1.0])]),
         row("turquin 0.5x0.5 white", &[(1.0, &TURQUIN, &[0.5, 0.5, 1.0, 1.0, 1.0])]),
         row("turquin 1x1 gold", &[(1.0, &TURQUIN, &[1.0, 1.0, 0.9, 0.6, 0.3])]),
