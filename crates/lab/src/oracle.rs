@@ -330,7 +330,7 @@ pub(crate) fn conductor(cos: f64, eta: f64, k: f64) -> f64 {
 
 /// Fresnel's reflectance between dielectrics by Snell's angles: r⊥ = −sin(θ − θ′)/sin(θ + θ′), r∥ = tan(θ − θ′)/tan(θ + θ′).
 pub(crate) fn dielectric(cos: f64, eta: f64) -> f64 {
-    let theta = cos.acos();
+    let theta = cos.min(1.0).acos(); // a product of two unit vectors may exceed 1 by rounding
     let sin_t = theta.sin() / eta;
     if sin_t >= 1.0 {
         return 1.0;

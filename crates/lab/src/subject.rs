@@ -33,8 +33,6 @@ pub(crate) struct Claims {
     pub(crate) slack: f64,
     /// No lobe has a positive weight: nothing is ever sampled.
     pub(crate) empty: bool,
-    /// The least width of a lobe, if it is narrow.
-    pub(crate) width: Option<f64>,
 }
 
 impl Claims {
@@ -49,7 +47,6 @@ impl Claims {
         transmits: false,
         slack: 0.0,
         empty: false,
-        width: None,
     };
 }
 
@@ -118,7 +115,6 @@ impl<'a> Subject<'a> {
         });
         let transmits = lobes.iter().any(|(_, lobe)| anatomy::transmits(lobe));
         let discrete = lobes.iter().all(|(_, lobe)| anatomy::is_discrete(lobe));
-        let width = anatomy::least_width(surface);
         let properties = surface.properties();
         let claims = Claims {
             properties,
@@ -130,7 +126,6 @@ impl<'a> Subject<'a> {
             transmits,
             slack: lobes.iter().map(|(weight, lobe)| weight * anatomy::slack(lobe)).sum(),
             empty: lobes.iter().all(|(weight, _)| *weight == 0.0),
-            width: Some(f64::from(width)),
         };
         let bounds: Vec<f64> = lobes.iter().map(|(_, lobe)| anatomy::largest_weight(lobe)).collect();
         let double = |surface: Surface<f64>| -> Box<dyn Probe> {
