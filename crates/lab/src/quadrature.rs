@@ -59,8 +59,12 @@ pub(crate) fn integrate(
     tolerance: f64,
     budget: usize,
 ) -> Integral {
-    let mut parts = vec![Part::new(f, area, rule(f, area))];
-    let mut points = 3 * POINTS;
+    // Four to begin with: an edge so near to the border that neither a whole nor its halves see it must hide from all of them.
+    let [middle_x, middle_y] = area.map(|[lo, hi]| 0.5 * (lo + hi));
+    let [x, y] = [(area[0], middle_x), (area[1], middle_y)].map(|([lo, hi], middle)| [[lo, middle], [middle, hi]]);
+    let quarters = [[x[0], y[0]], [x[0], y[1]], [x[1], y[0]], [x[1], y[1]]];
+    let mut parts: Vec<Part> = quarters.map(|quarter| Part::new(f, quarter, rule(f, quarter))).into();
+    let mut points = 12 * POINTS;
     loop {
         let error: f64 = parts.iter().map(|part| part.error).sum();
         let worst = (0..parts.len()).max_by(|&i, &j| parts[i].error.total_cmp(&parts[j].error));

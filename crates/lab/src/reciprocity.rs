@@ -5,7 +5,8 @@
 //! operations only (h = wo + wi, one sum in the visibility term). What differs is the rounding of cos_i s(wo) + cos_o s(wi)
 //! (fused on one side), of the product with cos_i, and the division by it here: at most 4 roundings of half an eps on
 //! either side and as many again for each lobe of a mixture, so 16 eps bounds it with room. Of a stranger's lobe no such
-//! thing is known: it gets 8 times the change that moving one input by one unit in the last place makes, or 8 eps.
+//! thing is known: either way may be off by as much as its precision allows, 8 times the change that moving one input by one unit in
+//! the last place makes, or 8 eps.
 //!
 //! A model that says it is not reciprocal must be caught being so, beyond that limit: else its claim is stale.
 
@@ -40,7 +41,8 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
             let limit = if view.claims.symmetric {
                 16.0 * eps * a.max(b)
             } else {
-                8.0 * (eps * a.max(b)).max(moves[c] / wi.z.abs())
+                // Either way may be off by the units that its model allows.
+                2.0 * f64::from(view.claims.properties.units) * (eps * a.max(b)).max(moves[c] / wi.z.abs())
             };
             residual = residual.max((a - b).abs() / a.max(b));
             finding.raise((a - b).abs() / limit, || {
