@@ -21,8 +21,8 @@
 //! $1 - E_{avg} = \alpha^2 \ln(1 + 0.218/\alpha)\,Q(\sqrt\alpha)$, the logarithm being that of GGX's long tail.
 //!
 //! In `f32` a logarithm's absolute error is the result's relative one, so the polynomials are summed from the nearer end of
-//! their interval ([`chebyshev`]), and what is small there, 1 − v or 1 − w, is computed and not left over: 1 − E is right to 6 units of
-//! the last place, half of the time to one.
+//! their interval, and what is small there, 1 − v or 1 − w, is computed and not left over: 1 − E is right to 6 units of the
+//! last place, half of the time to one.
 //!
 //! The coefficients are those of [`TABLE`], made by `cargo xtask tables`, which prints their error into `energy/tables.rs`:
 //! below 6e-5 for α in \[1e-8, 1\] and μ in (0, 1\]. $1 - E_{avg}$ is fitted to the integral of the approximation itself, not of
