@@ -10,7 +10,11 @@ use crate::real::{Precision, Real};
 /// stalls all eight; +∞ beyond the largest; NaN of NaN.
 #[inline(always)]
 pub fn exp<R: Real>(x: R) -> R {
-    limited(x, reduce(x))
+    let (n, r) = reduce(x);
+    let [least, largest] = range::<R>();
+    // Only what lies between the ends has an exponent; beyond, x is positive, or NaN.
+    let inside = reduced(n, r).or_zero(x.ge(R::lit(least)));
+    R::select(x.le(R::lit(largest)), inside, x * R::lit(f64::INFINITY))
 }
 
 /// [`exp`] of x ≤ 0; 0 of NaN.
@@ -20,26 +24,34 @@ pub(crate) fn exp_negative<R: Real>(x: R) -> R {
     reduced(n, r).or_zero(x.ge(R::lit(range::<R>()[0])))
 }
 
-/// e^(x + y), where y is what x was rounded by, or 0.
+/// e^(x + y), where y is what x was rounded by: with the same ends as [`exp`], but those of the sum.
 #[inline(always)]
 pub(super) fn exp_of_sum<R: Real>(x: R, y: R) -> R {
     let (n, r) = reduce(x);
-    limited(x, (n, r + y))
-}
-
-/// 2ⁿeʳ, the exponential of about x.
-#[inline(always)]
-fn limited<R: Real>(x: R, (n, r): (R::Int, R)) -> R {
+    let m = mantissa(r + y);
     let [least, largest] = range::<R>();
-    // Only what lies between the ends has an exponent; beyond, x is positive, or NaN.
-    let inside = reduced(n, r).or_zero(x.ge(R::lit(least)));
-    R::select(x.le(R::lit(largest)), inside, x * R::lit(f64::INFINITY))
+    // A unit of x is many of the result. So near the ends the exponent is added to half of m where it may be too large, and to
+    // more than m where it may be too small, and the product says what lies beyond.
+    let up = R::select(x.gt(R::ZERO), R::lit(0.5), R::lit(16_777_216.0)); // 2²⁴
+    let power = (m * up).ldexp(n) * up.recip();
+    let least_normal = match R::PRECISION {
+        Precision::Single => f64::from(f32::MIN_POSITIVE),
+        Precision::Double => f64::MIN_POSITIVE,
+    };
+    let inside = power.or_zero(x.ge(R::lit(least - 0.01)) & power.ge(R::lit(least_normal)));
+    R::select(x.le(R::lit(largest + 0.01)), inside, x * R::lit(f64::INFINITY))
 }
 
 /// 2ⁿeʳ for |r| up to about ½ ln 2.
 #[inline(always)]
 fn reduced<R: Real>(n: R::Int, r: R) -> R {
-    (R::ONE + r.mul_add(r * polynomial(r, coefficients::<R>()), r)).ldexp(n)
+    mantissa(r).ldexp(n)
+}
+
+/// eʳ for |r| up to about ½ ln 2.
+#[inline(always)]
+fn mantissa<R: Real>(r: R) -> R {
+    R::ONE + r.mul_add(r * polynomial(r, coefficients::<R>()), r)
 }
 
 /// factor·root², flushed to 0 below 2⁻¹²⁶ in `f32` without a denormal number on the way (one stalls all eight lanes). With
