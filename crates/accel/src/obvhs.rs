@@ -90,6 +90,17 @@ fn for_each_lane(mask: Mask8, mut f: impl FnMut(usize)) {
     }
 }
 
+/// Lets the lanes take turns, one step each, until every one of them has said that it is done.
+#[inline(always)]
+fn take_turns(mask: Mask8, mut is_done: impl FnMut(usize) -> bool) {
+    let mut live = mask;
+    while live.to_bits() != 0 {
+        let mut left = 0;
+        for_each_lane(live, |lane| left |= u32::from(!is_done(lane)) << lane);
+        live = Mask8::from_bits(left);
+    }
+}
+
 fn side_by_side(hits: &[Hit; F32x8::LANES]) -> Hit8 {
     Hit8 {
         t: F32x8::from_fn(|l| hits[l].t),
@@ -149,29 +160,22 @@ impl Tree {
         })
     }
 
+    /// Sends the live rays of eight on their way.
+    fn start(&self, walks: &mut [Walk; F32x8::LANES], ray: &Ray8) {
+        let beam = Beam::new(ray.origin, ray.dir, self.lo, self.hi);
+        for_each_lane(ray.mask, |lane| {
+            walks[lane].start(beam.splat_lane(lane), ray.t_min.lane(lane), ray.t_max.lane(lane), self.root);
+        });
+    }
+
     fn closest<const FAST: bool>(&self, kind: RayKind, rays: &[Ray8], hits: &mut [Hit8]) {
         let mut walks = self.walks();
         for (ray, hit) in rays.iter().zip(hits) {
-            let beam = Beam::new(ray.origin, ray.dir, self.lo, self.hi);
             let mut found = [MISS; F32x8::LANES];
-            for_each_lane(ray.mask, |lane| {
-                walks[lane].start(beam.splat_lane(lane), ray.t_min.lane(lane), ray.t_max.lane(lane), self.root);
-            });
+            self.start(&mut walks, ray);
             match kind {
                 RayKind::Coherent => for_each_lane(ray.mask, |lane| while self.step::<FAST>(&mut walks[lane]) {}),
-                RayKind::Incoherent => {
-                    let mut live = ray.mask.to_bits();
-                    while live != 0 {
-                        let mut bits = live;
-                        while bits != 0 {
-                            let lane = bits.trailing_zeros() as usize & 7;
-                            bits &= bits - 1;
-                            if !self.step::<FAST>(&mut walks[lane]) {
-                                live &= !(1 << lane);
-                            }
-                        }
-                    }
-                }
+                RayKind::Incoherent => take_turns(ray.mask, |lane| !self.step::<FAST>(&mut walks[lane])),
             }
             for_each_lane(ray.mask, |lane| {
                 let walk = &walks[lane];
@@ -218,24 +222,14 @@ impl Tree {
     fn occluded<const FAST: bool>(&self, rays: &[Ray8], filter: Option<&dyn Opacity>, blocked: &mut [Mask8]) {
         let mut walks = self.walks();
         for ((packet, ray), blocked) in rays.iter().enumerate().zip(blocked) {
-            let beam = Beam::new(ray.origin, ray.dir, self.lo, self.hi);
-            for_each_lane(ray.mask, |lane| {
-                walks[lane].start(beam.splat_lane(lane), ray.t_min.lane(lane), ray.t_max.lane(lane), self.root);
+            self.start(&mut walks, ray);
+            let mut shut = 0;
+            take_turns(ray.mask, |lane| {
+                let filter = filter.map(|f| (f, packet * F32x8::LANES + lane));
+                let hit = self.step_to_any::<FAST>(&mut walks[lane], filter);
+                shut |= u32::from(hit) << lane;
+                hit || walks[lane].stack.is_empty()
             });
-            let (mut live, mut shut) = (ray.mask.to_bits(), 0);
-            while live != 0 {
-                let mut bits = live;
-                while bits != 0 {
-                    let lane = bits.trailing_zeros() as usize & 7;
-                    bits &= bits - 1;
-                    let filter = filter.map(|f| (f, packet * F32x8::LANES + lane));
-                    let hit = self.step_to_any::<FAST>(&mut walks[lane], filter);
-                    shut |= u32::from(hit) << lane;
-                    if hit || walks[lane].stack.is_empty() {
-                        live &= !(1 << lane);
-                    }
-                }
-            }
             *blocked = Mask8::from_bits(shut);
         }
     }
