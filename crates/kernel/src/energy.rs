@@ -16,8 +16,8 @@
 //! holds the boundary layer at grazing, whose width is α, and the growth with α,
 //! $$1 - E = \frac{4\mu\alpha^2(1 + 12\alpha^2)}{(\mu + \alpha)(\mu + 4\alpha)^2}\,P(v, w), \qquad
 //!   v^4 = \frac{\mu(1 + 12\alpha)}{\mu + 12\alpha}, \quad w = \frac{5\alpha}{1 + 4\alpha},$$
-//! and leaves a P between 0.16 and 5.2, whose logarithm a tensor of Chebyshev polynomials follows on the unit square, to which v and
-//! w stretch all that there is of μ and α. Because 1 − E is what is approximated, it is positive however small it is. Its mean is
+//! and leaves a P between 0.16 and 5.2, whose logarithm a tensor of Chebyshev polynomials follows on the unit square, to which
+//! v and w stretch all that there is of μ and α. Because 1 − E is what is approximated, it is positive however small it is. Its mean is
 //! $1 - E_{avg} = \alpha^2 \ln(1 + 0.218/\alpha)\,Q(\sqrt\alpha)$, the logarithm being that of GGX's long tail.
 //!
 //! In `f32` a logarithm's absolute error is the result's relative one, so the polynomials are summed from the nearer end of

@@ -110,7 +110,7 @@ mod tests {
     use crate::testing::{Random, close, special_values};
 
     /// Orthonormal to 1e-6 and right-handed.
-    fn assert_frame(frame: Frame<f32>, from: Vec3<f32>) {
+    pub(super) fn assert_frame(frame: Frame<f32>, from: Vec3<f32>) {
         let Frame { x, y, z } = frame;
         for (a, b, dot) in [(x, x, 1.0), (y, y, 1.0), (z, z, 1.0), (x, y, 0.0), (y, z, 0.0), (z, x, 0.0)] {
             assert!(close(a.dot(b).into(), dot, 1e-6), "from {from:?}: {frame:?}");

@@ -79,6 +79,15 @@ const ATAN_DOUBLE: [[f64; 6]; 2] = [
     ],
 ];
 
+/// The least normal number.
+#[inline(always)]
+fn least_normal<R: Real>() -> R {
+    R::lit(match R::PRECISION {
+        Precision::Single => f64::from(f32::MIN_POSITIVE),
+        Precision::Double => f64::MIN_POSITIVE,
+    })
+}
+
 /// Horner's scheme, highest coefficient first.
 #[inline(always)]
 fn polynomial<R: Real>(x: R, coefficients: &[f64]) -> R {

@@ -66,15 +66,8 @@ pub fn on_its_side<R: Real>(geometric: Vec3<R>, wi: Vec3<R>, through: R::Mask) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::tests::assert_frame;
     use crate::testing::{Random, close, special_values};
-
-    fn assert_frame(frame: Frame<f32>, from: Vec3<f32>) {
-        let Frame { x, y, z } = frame;
-        for (a, b, dot) in [(x, x, 1.0), (y, y, 1.0), (z, z, 1.0), (x, y, 0.0), (y, z, 0.0), (z, x, 0.0)] {
-            assert!(close(a.dot(b).into(), dot, 1e-6), "from {from:?}: {frame:?}");
-        }
-        assert!(close(x.cross(y).dot(z).into(), 1.0, 1e-6), "from {from:?}: {frame:?} is left-handed");
-    }
 
     fn some_frame(random: &mut Random) -> Frame<f32> {
         Frame::from_normal_tangent(random.direction(), random.direction())

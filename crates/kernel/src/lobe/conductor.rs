@@ -13,8 +13,9 @@
 //! isotropic; for α_x ≠ α_y a white surface may return up to 4 % too much ([`effective_alpha`]).
 //!
 //! Cost of a value: two divisions and two roots, and for a conductor's Fresnel one division and six roots more; its density
-//! one division. Kulla & Conty's lobe: Fresnel's reflectance at two more cosines, about eight divisions and 300 multiplications.
-//! What depends on wo alone (s(wo), the bound, 1 − E(wo)) or on the material alone (1 − E_avg) is prepared once per closure.
+//! takes no further one. Kulla & Conty's lobe: Fresnel's reflectance at two more cosines, about ten divisions and 300
+//! multiplications. What depends on wo alone (s(wo), the reach of visible normals, 1 − E(wo)) or on the material alone
+//! (1 − E_avg) is prepared once per closure.
 
 use super::{Event, Lobe, Prepared, Properties, Sample, Value};
 use crate::energy::{

@@ -3,7 +3,7 @@
 //! x = n ln 2 + r with |r| ≤ ½ ln 2, the product in two words (Cody & Waite 1980), and eˣ = 2ⁿ(1 + r + r² P(r)). P is the
 //! minimax polynomial of the relative error of eʳ on that interval, by Remez' algorithm with 50 digits.
 
-use super::polynomial;
+use super::{least_normal, polynomial};
 use crate::real::{Precision, Real};
 
 /// eˣ: at most 2 ulp. Exactly 0 where it is below the least normal number (2⁻¹²⁶ in `f32`), because one denormal lane
@@ -34,11 +34,7 @@ pub(super) fn exp_of_sum<R: Real>(x: R, y: R) -> R {
     // more than m where it may be too small, and the product says what lies beyond.
     let up = R::select(x.gt(R::ZERO), R::lit(0.5), R::lit(16_777_216.0)); // 2²⁴
     let power = (m * up).ldexp(n) * up.recip();
-    let least_normal = match R::PRECISION {
-        Precision::Single => f64::from(f32::MIN_POSITIVE),
-        Precision::Double => f64::MIN_POSITIVE,
-    };
-    let inside = power.or_zero(x.ge(R::lit(least - 0.01)) & power.ge(R::lit(least_normal)));
+    let inside = power.or_zero(x.ge(R::lit(least - 0.01)) & power.ge(least_normal()));
     R::select(x.le(R::lit(largest + 0.01)), inside, x * R::lit(f64::INFINITY))
 }
 

@@ -5,7 +5,7 @@
 //! `f32` ln(1 + f) is a polynomial in f, without a division, and P serves `pow` alone.
 
 use super::exp::{exp_of_sum, ln_2};
-use super::{long_polynomial, polynomial};
+use super::{least_normal, long_polynomial, polynomial};
 use crate::real::{Precision, Real};
 
 /// ln x: at most 2 ulp, denormal numbers included. −∞ of 0, NaN below and of NaN, +∞ of +∞.
@@ -53,16 +53,12 @@ pub fn pow<R: Real>(x: R, y: R) -> R {
 /// m and k of x = m·2ᵏ, for positive x, denormal numbers included.
 #[inline(always)]
 fn split<R: Real>(x: R) -> (R, R) {
-    let (least, bits) = match R::PRECISION {
-        Precision::Single => (f64::from(f32::MIN_POSITIVE), 24.0),
-        Precision::Double => (f64::MIN_POSITIVE, 53.0),
+    let (bits, lift) = match R::PRECISION {
+        Precision::Single => (24.0, 16_777_216.0),
+        Precision::Double => (53.0, 9_007_199_254_740_992.0),
     };
-    let lift = R::lit(match R::PRECISION {
-        Precision::Single => 16_777_216.0,
-        Precision::Double => 9_007_199_254_740_992.0,
-    });
-    let denormal = x.lt(R::lit(least));
-    let (m, k) = R::select(denormal, x * lift, x).split_exponent();
+    let denormal = x.lt(least_normal());
+    let (m, k) = R::select(denormal, x * R::lit(lift), x).split_exponent();
     (m, R::select(denormal, k - R::lit(bits), k))
 }
 
