@@ -51,7 +51,7 @@ pub(crate) fn measure(f: SinCos, is_single: bool, run: &Run) -> Finding {
         let got = f(u);
         for (got, right) in [(got.0, right.0), (got.1, right.1)] {
             // One unit in the last place of `right`; never less than what makes 2 of them half an eps.
-            let ulp = (eps * f64::abs(right).log2().floor().exp2()).max(0.25 * eps);
+            let ulp = (eps * binade(right)).max(0.25 * eps);
             finding.raise((got - right).abs() / ulp, || format!("{got} instead of {right} at {u} turns"));
         }
     }
@@ -166,7 +166,10 @@ fn error_in_ulps(got: f32, exact: f64, bound: f64, flushes: bool) -> f64 {
 
 /// The distance of neighbouring `f32` at x, that of denormal ones below the normal.
 fn ulp(x: f64) -> f64 {
-    // 2^⌊log₂|x|⌋ is x with an empty fraction.
-    let power = f64::from_bits(x.to_bits() & f64::INFINITY.to_bits());
-    f64::from(f32::EPSILON) * power.max(f64::from(f32::MIN_POSITIVE))
+    f64::from(f32::EPSILON) * binade(x).max(f64::from(f32::MIN_POSITIVE))
+}
+
+/// 2^⌊log₂|x|⌋: x with an empty fraction.
+fn binade(x: f64) -> f64 {
+    f64::from_bits(x.to_bits() & f64::INFINITY.to_bits())
 }

@@ -49,7 +49,11 @@ pub(crate) fn metal(p: &[f64], wo: Dir, wi: Dir) -> Worth {
 
 /// Schlick's Fresnel: alpha_x, alpha_y, three f0.
 pub(crate) fn schlick(p: &[f64], wo: Dir, wi: Dir) -> Worth {
-    microfacet(p[0], p[1], wo, wi, |cos| [0, 1, 2].map(|c| p[2 + c] + (1.0 - p[2 + c]) * (1.0 - cos).powi(5)))
+    microfacet(p[0], p[1], wo, wi, |cos| [0, 1, 2].map(|c| schlick_curve(p[2 + c], cos)))
+}
+
+fn schlick_curve(f0: f64, cos: f64) -> f64 {
+    f0 + (1.0 - f0) * (1.0 - cos).powi(5)
 }
 
 /// F82: alpha_x, alpha_y, three f0, three tints. Schlick's curve less a cosθ (1 − cosθ)⁶, with a such that the curve is
@@ -68,7 +72,7 @@ pub(crate) fn f82(p: &[f64], wo: Dir, wi: Dir) -> Worth {
 /// Beckmann's distribution with Schlick's Fresnel: alpha_x, alpha_y, three f0. D in slopes (Walter et al. 2007, equation 25),
 /// Λ with the error function (Heitz 2014, equation 77); all visible normals as density.
 pub(crate) fn beckmann(p: &[f64], wo: Dir, wi: Dir) -> Worth {
-    let schlick = |cos: f64| ([0, 1, 2].map(|c| p[2 + c] + (1.0 - p[2 + c]) * (1.0 - cos).powi(5)), 1.0);
+    let schlick = |cos: f64| ([0, 1, 2].map(|c| schlick_curve(p[2 + c], cos)), 1.0);
     reflection(&|m| beckmann_d(p[0], p[1], m), &|w| beckmann_lambda(p[0], p[1], w), wo, wi, &schlick)
 }
 
@@ -101,7 +105,7 @@ pub(crate) fn separable(p: &[f64], wo: Dir, wi: Dir) -> Worth {
 /// Schlick's Fresnel with Kulla & Conty's lobe: alpha_x, alpha_y, three f0. The losses are the kernel's (the instrument `walk`
 /// and the tables' own tests hold them to quadrature), and so are the fitted constants; the arrangement is not.
 pub(crate) fn kulla_conty(p: &[f64], wo: Dir, wi: Dir) -> Worth {
-    let fresnel = |c: usize, cos: f64| p[2 + c] + (1.0 - p[2 + c]) * (1.0 - cos).powi(5);
+    let fresnel = |c: usize, cos: f64| schlick_curve(p[2 + c], cos);
     with_multiple(p, wo, wi, schlick(p, wo, wi), &fresnel)
 }
 
@@ -268,8 +272,9 @@ fn reflection(d: Distribution, lambda: Lambda, wo: Dir, wi: Dir, part: &dyn Fn(f
     let (g1, g2) = (1.0 / (1.0 + lambda_o), 1.0 / (1.0 + lambda_o + lambda_i));
     // D_visible(m) = G₁ D (wo·m)/cosθ_o, and dω_m/dω_i = 1/(4 wo·m).
     let (fresnel, reflects) = part(cos_om);
-    let pdf = reflects * g1 * d(m) * cos_om / wo.z / (4.0 * cos_om);
-    Worth { f_cos: fresnel.map(|f| f * d(m) * g2 / (4.0 * wo.z * wi.z) * wi.z), pdf }
+    let d = d(m);
+    let pdf = reflects * g1 * d * cos_om / wo.z / (4.0 * cos_om);
+    Worth { f_cos: fresnel.map(|f| f * d * g2 / (4.0 * wo.z * wi.z) * wi.z), pdf }
 }
 
 /// D(m) = 1 / (π α_x α_y cos⁴θ (1 + tan²θ (cos²φ/α_x² + sin²φ/α_y²))²).

@@ -60,10 +60,8 @@ pub(crate) fn integrate(
     budget: usize,
 ) -> Integral {
     // Four to begin with: an edge so near to the border that neither a whole nor its halves see it must hide from all of them.
-    let [middle_x, middle_y] = area.map(|[lo, hi]| 0.5 * (lo + hi));
-    let [x, y] = [(area[0], middle_x), (area[1], middle_y)].map(|([lo, hi], middle)| [[lo, middle], [middle, hi]]);
-    let quarters = [[x[0], y[0]], [x[0], y[1]], [x[1], y[0]], [x[1], y[1]]];
-    let mut parts: Vec<Part> = quarters.map(|quarter| Part::new(f, quarter, rule(f, quarter))).into();
+    let quarters = halves(area, 0).into_iter().flat_map(|half| halves(half, 1));
+    let mut parts: Vec<Part> = quarters.map(|quarter| Part::new(f, quarter, rule(f, quarter))).collect();
     let mut points = 12 * POINTS;
     loop {
         let error: f64 = parts.iter().map(|part| part.error).sum();
@@ -96,13 +94,7 @@ struct Part {
 
 impl Part {
     fn new(f: &dyn Fn(f64, f64) -> Integrands, area: Rectangle, (whole, axis): (Integrands, usize)) -> Self {
-        let [lo, hi] = area[axis];
-        let middle = 0.5 * (lo + hi);
-        let halves = [[lo, middle], [middle, hi]].map(|side| {
-            let mut half = area;
-            half[axis] = side;
-            (half, rule(f, half))
-        });
+        let halves = halves(area, axis).map(|half| (half, rule(f, half)));
         let [a, b] = [halves[0].1.0, halves[1].1.0];
         let error = (0..whole.len()).fold(0.0, |worst, i| {
             let difference = (a[i] + b[i] - whole[i]).abs();
@@ -111,6 +103,17 @@ impl Part {
         });
         Self { halves, error }
     }
+}
+
+/// Both halves of a rectangle across a direction.
+fn halves(area: Rectangle, axis: usize) -> [Rectangle; 2] {
+    let [lo, hi] = area[axis];
+    let middle = 0.5 * (lo + hi);
+    [[lo, middle], [middle, hi]].map(|side| {
+        let mut half = area;
+        half[axis] = side;
+        half
+    })
 }
 
 /// The value of the rule, and along which variable the integrand is rougher.

@@ -110,7 +110,7 @@ pub(crate) fn measure(surface: &Surface<f32>, index: usize, single: bool, run: &
         above: why(last.wrapping_add(1)),
         tried: values.len(),
     };
-    let mut finding = Finding::at_most(0.0, "unsafe values of the number inside its domain ≤");
+    let mut finding = Finding::at_most(0.0, "values of the number that are not safe inside its domain ≤");
     let has_shape = |x: f32| rough != Some(Rough::Width) || x >= NARROWEST;
     let is_bad = |at: &usize| {
         let x = values[*at];

@@ -178,8 +178,10 @@ fn mirror<R: Real>(p: &[R]) -> AnyLobe<R> {
     Mirror::new(rgb(p)).into()
 }
 fn metal<R: Real>(p: &[R]) -> AnyLobe<R> {
-    let fresnel = Fresnel::Conductor { eta: rgb(&p[2..]), k: rgb(&p[5..]) };
-    Conductor::new(ggx(p), fresnel).into()
+    metal_lobe(p).into()
+}
+fn metal_lobe<R: Real>(p: &[R]) -> Conductor<R> {
+    Conductor::new(ggx(p), Fresnel::Conductor { eta: rgb(&p[2..]), k: rgb(&p[5..]) })
 }
 fn schlick<R: Real>(p: &[R]) -> AnyLobe<R> {
     Conductor::new(ggx(p), Fresnel::Schlick { f0: rgb(&p[2..]) }).into()
@@ -199,8 +201,7 @@ fn turquin<R: Real>(p: &[R]) -> AnyLobe<R> {
     single.with_compensation(Compensation::Turquin).into()
 }
 fn metal_kulla_conty<R: Real>(p: &[R]) -> AnyLobe<R> {
-    let fresnel = Fresnel::Conductor { eta: rgb(&p[2..]), k: rgb(&p[5..]) };
-    Conductor::new(ggx(p), fresnel).with_compensation(Compensation::KullaConty).into()
+    metal_lobe(p).with_compensation(Compensation::KullaConty).into()
 }
 fn kulla_conty<R: Real>(p: &[R]) -> AnyLobe<R> {
     let single = Conductor::new(ggx(p), Fresnel::Schlick { f0: rgb(&p[2..]) });
