@@ -33,7 +33,8 @@ const SIGNIFICANCE: f64 = 0.005;
 ///
 /// Measures the kernel's lobes with every instrument, renders furnace scenes whose answer is known, and casts the same rays
 /// with every backend. Prints one line per instrument and what failed; writes report.html, report.json and
-/// summary.json (by instrument) to the output folder. With a correct build, all tests of a run together fail by chance with probability 0.01 at most, at any seed.
+/// summary.json (by instrument) to the output folder. With a correct build, all tests of a run together fail by chance with
+/// probability 0.01 at most, at any seed.
 /// Exits with 0 if everything that ran passed, with 3 otherwise.
 #[derive(clap::Args)]
 pub(crate) struct Args {
@@ -123,7 +124,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         format!("{}\nreport: {}\n", table::text(&report), args.out.join("report.html").display())
     };
     write_text(&Target::Stdout, &printed)?;
-    Ok(ExitCode::from(if report.failed == 0 { 0 } else { 3 }))
+    Ok(ExitCode::from(if report.header.failed == 0 { 0 } else { 3 }))
 }
 
 fn json_text(report: &impl Serialize) -> Result<String> {

@@ -13,7 +13,7 @@ use std::fmt::Write;
 
 /// The whole page.
 pub(super) fn page(report: &Report, exhibits: &[Exhibit], plots: &[Plot]) -> String {
-    let (class, word) = if report.failed > 0 { ("bad", "Failed") } else { ("good", "Passed") };
+    let (class, word) = if report.header.failed > 0 { ("bad", "Failed") } else { ("good", "Passed") };
     let mut page = head(&format!("Gonio validation: {word}"));
     let _ = writeln!(
         page,
@@ -22,11 +22,11 @@ pub(super) fn page(report: &Report, exhibits: &[Exhibit], plots: &[Plot]) -> Str
          of a run fail by chance with probability 0.01 at most, all together: half of that belongs to the rendered scenes, \
          half to the kernel.</p>",
         escape(&report.summary()),
-        report.version,
+        report.header.version,
         report.effort_name(),
-        report.seed,
-        report.seconds,
-        report.only.as_ref().map_or_else(String::new, |only| format!(", only “{}”", escape(only))),
+        report.header.seed,
+        report.header.seconds,
+        report.header.only.as_ref().map_or_else(String::new, |only| format!(", only “{}”", escape(only))),
     );
     failures(&mut page, report);
     overview(&mut page, report);
@@ -38,7 +38,7 @@ pub(super) fn page(report: &Report, exhibits: &[Exhibit], plots: &[Plot]) -> Str
     for (name, group) in groups(&report.checks) {
         instrument(&mut page, report, name, &group);
     }
-    environment(&mut page, &report.environment);
+    environment(&mut page, &report.header.environment);
     page + "</body>\n</html>\n"
 }
 

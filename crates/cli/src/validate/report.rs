@@ -6,9 +6,9 @@ use crate::environment::Environment;
 use gonio_lab::{Check, Effort, Options, Outcome};
 use serde::Serialize;
 
-/// What `report.json` holds.
+/// What was run, how it ended, and where.
 #[derive(Debug, Serialize)]
-pub(super) struct Report {
+pub(super) struct Header {
     pub(super) version: &'static str,
     pub(super) effort: Effort,
     pub(super) seed: u64,
@@ -18,6 +18,13 @@ pub(super) struct Report {
     pub(super) not_run: usize,
     pub(super) seconds: f64,
     pub(super) environment: Environment,
+}
+
+/// What `report.json` holds.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    #[serde(flatten)]
+    pub(super) header: Header,
     pub(super) instruments: Vec<Instrument>,
     pub(super) checks: Vec<Check>,
     /// The counts behind the checks of the census, and every disagreement.
@@ -34,15 +41,8 @@ pub(super) struct Instrument {
 /// What `summary.json` holds: a report whose checks are summed up by instrument, small enough to be kept.
 #[derive(Debug, Serialize)]
 pub(super) struct Summary<'a> {
-    version: &'a str,
-    effort: Effort,
-    seed: u64,
-    only: Option<&'a str>,
-    passed: usize,
-    failed: usize,
-    not_run: usize,
-    seconds: f64,
-    environment: &'a Environment,
+    #[serde(flatten)]
+    header: &'a Header,
     instruments: Vec<Total<'a>>,
 }
 
@@ -71,15 +71,17 @@ impl Report {
     ) -> Self {
         let [passed, failed, not_run] = counts(checks.iter());
         Self {
-            version: env!("CARGO_PKG_VERSION"),
-            effort: options.effort,
-            seed: options.seed,
-            only: options.only.clone(),
-            passed,
-            failed,
-            not_run,
-            seconds,
-            environment: Environment::here(),
+            header: Header {
+                version: env!("CARGO_PKG_VERSION"),
+                effort: options.effort,
+                seed: options.seed,
+                only: options.only.clone(),
+                passed,
+                failed,
+                not_run,
+                seconds,
+                environment: Environment::here(),
+            },
             instruments: instruments.into_iter().map(|(name, proves)| Instrument { name, proves }).collect(),
             checks,
             census,
@@ -100,18 +102,7 @@ impl Report {
                 subjects: checks.iter().map(|check| &*check.subject).collect(),
             }
         });
-        Summary {
-            version: self.version,
-            effort: self.effort,
-            seed: self.seed,
-            only: self.only.as_deref(),
-            passed: self.passed,
-            failed: self.failed,
-            not_run: self.not_run,
-            seconds: self.seconds,
-            environment: &self.environment,
-            instruments: instruments.collect(),
-        }
+        Summary { header: &self.header, instruments: instruments.collect() }
     }
 
     /// "412 passed, 0 failed, 1 not run (census: obvhs on …)".
@@ -124,12 +115,12 @@ impl Report {
             (_, 0) => format!(" ({})", shown.join(", ")),
             (_, more) => format!(" ({} and {more} more)", shown.join(", ")),
         };
-        format!("{} passed, {} failed, {} not run{names}", self.passed, self.failed, self.not_run)
+        format!("{} passed, {} failed, {} not run{names}", self.header.passed, self.header.failed, self.header.not_run)
     }
 
     /// The effort in one word.
     pub(super) fn effort_name(&self) -> &'static str {
-        match self.effort {
+        match self.header.effort {
             Effort::Quick => "quick",
             Effort::Standard => "standard",
             Effort::Full => "full",

@@ -18,9 +18,9 @@ pub(super) fn text(report: &Report) -> String {
     let width = groups.iter().map(|(name, _)| name.len()).max().unwrap_or(0).max("instrument".len());
     let mut out = format!(
         "gonio {} validate, {} effort, seed {}\n\n{:width$}  rows  {:>9}  {:<9}  {:MEANING$}  {:>7}  result\n",
-        report.version,
+        report.header.version,
         report.effort_name(),
-        report.seed,
+        report.header.seed,
         "instrument",
         "worst",
         "limit",
@@ -42,7 +42,7 @@ pub(super) fn text(report: &Report) -> String {
         );
     }
     out.push('\n');
-    if report.only.is_some() && report.checks.len() <= FEW {
+    if report.header.only.is_some() && report.checks.len() <= FEW {
         rows(&mut out, &report.checks);
     }
     let mut failed: Vec<&Check> = report.checks.iter().filter(|check| check.failed()).collect();
@@ -65,7 +65,7 @@ pub(super) fn text(report: &Report) -> String {
             out += &format!("not run  {}: {}: {why}\n", check.instrument, check.subject);
         }
     }
-    out + &format!("{}, {:.1} s\n", report.summary(), report.seconds)
+    out + &format!("{}, {:.1} s\n", report.summary(), report.header.seconds)
 }
 
 /// What was found where nothing failed.
