@@ -43,6 +43,14 @@ fn rendered(scene: &Scene, change: impl Fn(&mut RenderSettings)) -> Rendering {
     render(&world, &*accel, &settings, &mut |_| ControlFlow::Continue(()))
 }
 
+/// Each map of one normal must give its normal of the world.
+fn assert_normals(scene: &mut Scene, pairs: [([f32; 3], [f32; 3]); 2]) {
+    for (n, world) in pairs {
+        scene.normal_maps = vec![constant(n)];
+        assert_normal(scene, world);
+    }
+}
+
 /// The normal that every pixel sees.
 #[track_caller]
 fn assert_normal(scene: &Scene, expected: [f32; 3]) {
@@ -55,10 +63,7 @@ fn assert_normal(scene: &Scene, expected: [f32; 3]) {
 fn red_leans_along_u_and_green_along_v() {
     let folder = Folder::new();
     let mut scene = scene(&folder, SQUARE, 5.0, "", "");
-    for (n, world) in [([0.6, 0.0, 0.8], [0.6, 0.8, 0.0]), ([0.0, 0.6, 0.8], [0.0, 0.8, -0.6])] {
-        scene.normal_maps = vec![constant(n)];
-        assert_normal(&scene, world);
-    }
+    assert_normals(&mut scene, [([0.6, 0.0, 0.8], [0.6, 0.8, 0.0]), ([0.0, 0.6, 0.8], [0.0, 0.8, -0.6])]);
 }
 
 #[test]
@@ -67,30 +72,21 @@ fn a_mirrored_texture_keeps_the_directions_of_its_own_axes() {
     // u runs along −x.
     let mirrored = SQUARE.replace("vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1", "vt 1 0\nvt 0 0\nvt 0 1\nvt 1 1");
     let mut scene = scene(&folder, &mirrored, 5.0, "", "");
-    for (n, world) in [([0.6, 0.0, 0.8], [-0.6, 0.8, 0.0]), ([0.0, 0.6, 0.8], [0.0, 0.8, -0.6])] {
-        scene.normal_maps = vec![constant(n)];
-        assert_normal(&scene, world);
-    }
+    assert_normals(&mut scene, [([0.6, 0.0, 0.8], [-0.6, 0.8, 0.0]), ([0.0, 0.6, 0.8], [0.0, 0.8, -0.6])]);
 }
 
 #[test]
 fn a_mirrored_mesh_mirrors_its_bumps() {
     let folder = Folder::new();
     let mut scene = scene(&folder, SQUARE, 5.0, "", "transform = [{ scale = [-1, 1, 1] }]");
-    for (n, world) in [([0.6, 0.0, 0.8], [-0.6, 0.8, 0.0]), ([0.0, 0.6, 0.8], [0.0, 0.8, -0.6])] {
-        scene.normal_maps = vec![constant(n)];
-        assert_normal(&scene, world);
-    }
+    assert_normals(&mut scene, [([0.6, 0.0, 0.8], [-0.6, 0.8, 0.0]), ([0.0, 0.6, 0.8], [0.0, 0.8, -0.6])]);
 }
 
 #[test]
 fn seen_from_behind_a_bump_is_a_dent() {
     let folder = Folder::new();
     let mut scene = scene(&folder, SQUARE, -5.0, "", "");
-    for (n, world) in [([0.6, 0.0, 0.8], [-0.6, -0.8, 0.0]), ([0.0, 0.6, 0.8], [0.0, -0.8, 0.6])] {
-        scene.normal_maps = vec![constant(n)];
-        assert_normal(&scene, world);
-    }
+    assert_normals(&mut scene, [([0.6, 0.0, 0.8], [-0.6, -0.8, 0.0]), ([0.0, 0.6, 0.8], [0.0, -0.8, 0.6])]);
 }
 
 #[test]
