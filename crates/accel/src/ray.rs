@@ -67,6 +67,17 @@ impl Hit8 {
         Self { t: F32x8::splat(f32::INFINITY), bary: [F32x8::ZERO; 2], prim: none, mesh: none, instance: none }
     }
 
+    /// Puts a hit into a lane, which is taken modulo 8.
+    #[inline]
+    pub fn set(&mut self, lane: usize, hit: &Hit) {
+        self.t.set_lane(lane, hit.t);
+        self.bary[0].set_lane(lane, hit.bary[0]);
+        self.bary[1].set_lane(lane, hit.bary[1]);
+        self.prim.set_lane(lane, hit.prim);
+        self.mesh.set_lane(lane, hit.mesh);
+        self.instance.set_lane(lane, hit.instance);
+    }
+
     /// The hit of one lane, `None` for a miss.
     pub fn lane(&self, lane: usize) -> Option<Hit> {
         let hit = Hit {

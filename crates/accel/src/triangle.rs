@@ -54,6 +54,12 @@ const U: f32 = 1.0 / 16_777_216.0;
 /// arithmetic adds 2u. Sixteen leaves room.
 pub const PAD: f32 = 16.0 * U;
 
+/// And by this times the origin's coordinate: origin/d and what is added to it are rounded once each.
+const OFFSET_ERROR: f32 = 4.0 * U;
+
+/// The inverse of a direction's component is at most this: times a coordinate of 1e18 it is still finite.
+const STEEPEST: f32 = 1e18;
+
 /// Error bound of n·(v₀ − o), and of n·d, in units of the sum of its absolute products: three roundings for the edges and
 /// the difference, two for the cross product, three for the dot product.
 const PLANE_ERROR: f32 = 8.0 * U;
@@ -73,8 +79,10 @@ pub struct Beam {
     dir: Vec3<F32x8>,
     across: [Vec3<F32x8>; 2],
     inverse: Vec3<F32x8>,
-    /// The padding, as a distance along the ray for each axis.
-    pad: Vec3<F32x8>,
+    /// What a near plane's coordinate times the inverse lacks to be the distance of the padded plane.
+    enter: Vec3<F32x8>,
+    /// The same for a far plane.
+    leave: Vec3<F32x8>,
     slack: F32x8,
 }
 
@@ -84,11 +92,15 @@ impl Beam {
         let (u, v) = tangents(dir);
         let (to_lo, to_hi) = ((Vec3::broadcast(lo) - origin).abs(), (Vec3::broadcast(hi) - origin).abs());
         let reach = to_lo.x.max(to_hi.x) + to_lo.y.max(to_hi.y) + to_lo.z.max(to_hi.z);
-        let pad = reach * F32x8::splat(PAD);
         // A direction without an x never leaves its slab: a large finite slope says so without 0·∞.
-        let slope = |d: F32x8| d.abs().recip().min(F32x8::splat(1e30)).copysign(d);
+        let slope = |d: F32x8| d.abs().recip().min(F32x8::splat(STEEPEST)).copysign(d);
         let inverse = Vec3::new(slope(dir.x), slope(dir.y), slope(dir.z));
-        Self { origin, dir, across: [u, v], inverse, pad: inverse.abs() * pad, slack: reach * F32x8::splat(SLACK) }
+        let pad = |i: F32x8, o: F32x8| i.abs() * o.abs().mul_add(F32x8::splat(OFFSET_ERROR), reach * F32x8::splat(PAD));
+        let pad = Vec3::new(pad(inverse.x, origin.x), pad(inverse.y, origin.y), pad(inverse.z, origin.z));
+        let offset = Vec3::new(inverse.x * origin.x, inverse.y * origin.y, inverse.z * origin.z);
+        let enter = Vec3::new(-offset.x - pad.x, -offset.y - pad.y, -offset.z - pad.z);
+        let leave = pad - offset;
+        Self { origin, dir, across: [u, v], inverse, enter, leave, slack: reach * F32x8::splat(SLACK) }
     }
 
     /// Lane `lane` of these rays, in all eight lanes.
@@ -101,7 +113,8 @@ impl Beam {
             dir: each(self.dir),
             across: self.across.map(each),
             inverse: each(self.inverse),
-            pad: each(self.pad),
+            enter: each(self.enter),
+            leave: each(self.leave),
             slack: one(self.slack),
         }
     }
@@ -128,11 +141,11 @@ impl Beam {
     /// The padded slab interval \[t_near, t_far\] of boxes whose near and far planes are given.
     #[inline(always)]
     pub fn slab(&self, near: Vec3<F32x8>, far: Vec3<F32x8>) -> [F32x8; 2] {
-        // The difference first: beside a large coordinate the padding would be lost.
-        let (near, far) = (near - self.origin, far - self.origin);
-        let (i, pad) = (self.inverse, self.pad);
-        let enter = [near.x.mul_add(i.x, -pad.x), near.y.mul_add(i.y, -pad.y), near.z.mul_add(i.z, -pad.z)];
-        let leave = [far.x.mul_add(i.x, pad.x), far.y.mul_add(i.y, pad.y), far.z.mul_add(i.z, pad.z)];
+        let i = self.inverse;
+        let enter =
+            [near.x.mul_add(i.x, self.enter.x), near.y.mul_add(i.y, self.enter.y), near.z.mul_add(i.z, self.enter.z)];
+        let leave =
+            [far.x.mul_add(i.x, self.leave.x), far.y.mul_add(i.y, self.leave.y), far.z.mul_add(i.z, self.leave.z)];
         [enter[0].max(enter[1]).max(enter[2]), leave[0].min(leave[1]).min(leave[2])]
     }
 }
@@ -148,6 +161,12 @@ pub struct Crossing {
 }
 
 impl Crossing {
+    /// The edge functions, each opposite its corner, up to a common factor.
+    #[inline(always)]
+    pub fn edges(&self) -> &[F32x8; 3] {
+        &self.edges
+    }
+
     /// Barycentric weights of the second and third vertex; the first has 1 − b1 − b2.
     #[inline(always)]
     pub fn bary(&self) -> [F32x8; 2] {
@@ -157,7 +176,7 @@ impl Crossing {
 
 /// Barycentric weights of the second and third vertex from the edge functions.
 #[inline(always)]
-pub fn barycentric(edges: &[F32x8; 3]) -> [F32x8; 2] {
+pub fn barycentric<R: Real>(edges: &[R; 3]) -> [R; 2] {
     let [e0, e1, e2] = *edges;
     let scale = (e0 + e1 + e2).recip();
     [e1 * scale, e2 * scale]

@@ -54,6 +54,11 @@ impl F32x8 {
     pub fn lane(&self, lane: usize) -> f32 {
         self.0.as_array()[lane & 7]
     }
+    /// Puts `x` into lane `lane` modulo 8.
+    #[inline(always)]
+    pub fn set_lane(&mut self, lane: usize, x: f32) {
+        self.0.as_mut_array()[lane & 7] = x;
+    }
     /// The lanes in order.
     #[inline(always)]
     pub fn to_array(self) -> [f32; 8] {
@@ -83,6 +88,11 @@ impl Mask8 {
     pub fn first(count: usize) -> Self {
         Self::from_bits(if count >= 8 { 0xff } else { (1_u32 << count) - 1 })
     }
+    /// Lane *i* is lane `from[i]` modulo 8 of `self`.
+    #[inline(always)]
+    pub fn permute(self, from: U32x8) -> Self {
+        Self(F32x8(self.0).to_bits().permute(from).as_real().0)
+    }
     /// Whether lane `lane` is true.
     #[inline(always)]
     pub fn lane(self, lane: usize) -> bool {
@@ -111,6 +121,11 @@ impl U32x8 {
     pub fn lane(&self, lane: usize) -> u32 {
         self.0.as_array()[lane & 7]
     }
+    /// Puts `x` into lane `lane` modulo 8.
+    #[inline(always)]
+    pub fn set_lane(&mut self, lane: usize, x: u32) {
+        self.0.as_mut_array()[lane & 7] = x;
+    }
     /// The lanes in order.
     #[inline(always)]
     pub fn to_array(self) -> [u32; 8] {
@@ -136,6 +151,17 @@ impl U32x8 {
     pub fn lt(self, other: Self) -> Mask8 {
         let (a, b): (i32x8, i32x8) = (bytemuck::cast(self.0), bytemuck::cast(other.0));
         Mask8(bytemuck::cast(a.simd_lt(b)))
+    }
+    /// Lane *i* is lane `from[i]` modulo 8 of `self`.
+    #[inline(always)]
+    pub fn permute(self, from: Self) -> Self {
+        // The instruction looks at three bits by itself.
+        if cfg!(target_feature = "avx2") { Self(self.0.shuffle(from.0)) } else { Self(self.0.shuffle_wrapping(from.0)) }
+    }
+    /// Lane *i* is shifted down by `bits[i]`, which is below 32.
+    #[inline(always)]
+    pub fn shr_each(self, bits: Self) -> Self {
+        Self(self.0.unbounded_shr(bits.0))
     }
     /// `yes` where `mask`, `no` elsewhere.
     #[inline(always)]

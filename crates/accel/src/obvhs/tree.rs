@@ -1,55 +1,82 @@
-//! The eight-wide tree: `obvhs`' binary tree, collapsed.
+//! The eight-wide tree.
 //!
-//! A subtree of at most eight triangles becomes one leaf block, because eight triangles cost as much to test as one. An
-//! inner node starts with the two children of its binary node and keeps opening the one of largest area that is too large
-//! for a block; slots that remain open blocks whose halves are smaller than the whole. The surface area is what a random
-//! ray's chance to enter a box is proportional to (Goldsmith & Salmon 1987). Beyond a million triangles the tree is made of
-//! parts ([`parts`]), each collapsed before the next is built, and a small tree over the parts.
+//! A leaf is a block of up to eight triangles side by side, because eight triangles cost as much to test as one; a node has
+//! up to eight children, their boxes side by side. Which subtrees of the binary tree ([`super::sah`]) become nodes, children and
+//! blocks is decided by [`super::collapse`]. Beyond [`PART`] triangles the tree is made of parts, each collapsed
+//! before the next is built, and a small tree over the parts, so that the memory it takes to build does not grow with the scene.
 
-use super::parts;
+use super::boxes::{Box3, Ref};
+use super::collapse::Collapse;
+use super::{order, sah};
 use crate::geometry::{Geometry, Order};
-use gonio_kernel::{F32x8, Vec3};
-use obvhs::BvhBuildParams;
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::builder::build_bvh2;
+use glam::Vec4;
+use gonio_kernel::{F32x8, Real, U32x8, Vec3};
 
 /// How many children a node has, and how many triangles a block.
-const WIDTH: usize = F32x8::LANES;
+pub(super) const WIDTH: usize = F32x8::LANES;
+
+/// Most triangles of a part.
+const PART: usize = 1 << 20;
 
 /// A subtree: an inner node, or a leaf block if the top bit is set.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Child(u32);
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Child(pub(super) u32);
 
 const LEAF: u32 = 1 << 31;
 
-/// Eight children, their boxes side by side, the largest first. An unused slot has an inverted infinite box, which no ray enters.
-#[derive(Clone, Debug)]
-pub(super) struct Node {
-    /// Lower and upper planes.
-    pub(super) planes: [Vec3<F32x8>; 2],
-    pub(super) children: [Child; WIDTH],
+impl Child {
+    #[inline(always)]
+    pub(super) fn is_leaf(self) -> bool {
+        self.0 & LEAF != 0
+    }
 }
 
-/// Eight triangles side by side. Unused lanes repeat the first, which changes no result.
+/// A node or a block, as ten times eight words, so that where the next one lies is known before which of both it is.
+///
+/// A **node** has up to eight children: rows 0 to 5 are the lower and upper planes across x, y, z of their boxes, row 6 the
+/// children, that where a hit is likeliest last; row 7 has for each octant of directions the slots, the farthest first, three
+/// bits each. Bit a of an octant is set if directions point down axis a. An unused slot has an inverted infinite box, which no ray
+/// enters. A **block** has up to eight triangles: rows 0 to 8 are x, y, z of their three corners, row 9 their places in the
+/// order of (instance, prim). Unused lanes repeat the first, which changes no result.
 #[derive(Clone, Debug)]
-pub(super) struct Leaf {
-    pub(super) corners: [Vec3<F32x8>; 3],
-    /// Place in the order of (instance, prim).
-    pub(super) index: [u32; WIDTH],
-}
+#[repr(C, align(64))]
+pub(super) struct Cell([F32x8; 10]);
 
-/// A child, looked at.
-pub(super) enum Opened<'a> {
-    Node(&'a Node),
-    Leaf(&'a Leaf),
+impl Cell {
+    /// A plane of the boxes; rows beyond the planes for numbers from 6 on, which are taken modulo 8.
+    #[inline(always)]
+    pub(super) fn plane(&self, row: usize) -> F32x8 {
+        self.0[row & 7]
+    }
+
+    #[inline(always)]
+    pub(super) fn children(&self) -> U32x8 {
+        self.0[6].to_bits()
+    }
+
+    /// The order of an octant, packed.
+    #[inline(always)]
+    pub(super) fn order(&self, octant: usize) -> u32 {
+        self.0[7].lane(octant).to_bits()
+    }
+
+    #[inline(always)]
+    pub(super) fn corners(&self) -> [Vec3<F32x8>; 3] {
+        let r = &self.0;
+        [Vec3::new(r[0], r[1], r[2]), Vec3::new(r[3], r[4], r[5]), Vec3::new(r[6], r[7], r[8])]
+    }
+
+    /// The place of a triangle of the block.
+    #[inline(always)]
+    pub(super) fn index(&self, lane: usize) -> u32 {
+        self.0[9].lane(lane).to_bits()
+    }
 }
 
 /// The whole tree.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
-    nodes: Vec<Node>,
-    leaves: Vec<Leaf>,
+    cells: Vec<Cell>,
     pub(super) root: Child,
     pub(super) order: Order,
     pub(super) lo: Vec3<f32>,
@@ -60,200 +87,166 @@ pub(super) struct Tree {
 impl Tree {
     /// The tree over all triangles; `progress` is told how many are done.
     pub(super) fn build(geometry: &Geometry, progress: &mut dyn FnMut(usize)) -> Self {
-        Self::in_parts(geometry, parts::MOST, progress)
+        Self::in_parts(geometry, PART, progress)
     }
 
     /// The tree in parts of at most so many triangles.
-    pub(super) fn in_parts(geometry: &Geometry, most: usize, progress: &mut dyn FnMut(usize)) -> Self {
+    fn in_parts(geometry: &Geometry, most: usize, progress: &mut dyn FnMut(usize)) -> Self {
         let none = Vec3::splat(0.0);
         let order = geometry.order().clone();
-        let mut tree =
-            Self { nodes: Vec::new(), leaves: Vec::new(), root: Child(0), order, lo: none, hi: none, depth: 1 };
-        let (triangles, ends) = parts::split(geometry, most);
-        let mut roots: Vec<(Aabb, Child)> = Vec::new();
+        let mut tree = Self { cells: Vec::new(), root: Child(0), order, lo: none, hi: none, depth: 1 };
+        let mut refs: Vec<Ref> = (0..geometry.triangle_count() as u32).map(|i| Ref::of_triangle(geometry, i)).collect();
+        let mut roots = Vec::new();
+        let mut odds = Vec::new();
+        let mut parts = Vec::new();
         let mut start = 0;
-        for end in ends {
-            let part = &triangles[start..end];
-            let boxes: Vec<Aabb> = part.iter().map(|&triangle| bounds_of(geometry, triangle)).collect();
-            if let Some((bounds, binary)) = binary(&boxes) {
-                drop(boxes);
-                let leaf = |tree: &mut Self, node| tree.block(geometry, &binary, part, node);
-                roots.push((bounds, Collapse::new(&binary, WIDTH).run(&mut tree, leaf)));
+        for end in sah::split(&mut refs, most) {
+            let binary = sah::build(&mut refs[start..end]);
+            if let Some(root) = binary.first() {
+                parts.push(Ref::new(root.bounds(), roots.len() as u32));
+                let leaf = |tree: &mut Self, node: usize| tree.block(geometry, &triangles(&binary, node));
+                let nodes = Collapse::new(&binary, WIDTH).run(&mut tree, leaf);
+                order::settle(&mut tree, &nodes, &mut odds);
+                roots.push(nodes[0]);
             }
             start = end;
             progress(end);
         }
-        let boxes: Vec<Aabb> = roots.iter().map(|root| root.0).collect();
-        match (binary(&boxes), &roots[..]) {
-            (None, _) => tree.nodes.push(Node::empty()),
-            (Some((bounds, _)), [root]) => {
-                (tree.root, tree.lo, tree.hi) = (root.1, vector(bounds.min), vector(bounds.max))
-            }
-            (Some((bounds, binary)), _) => {
-                let below = std::mem::replace(&mut tree.depth, 1);
-                let part = |_: &mut Self, node| roots[primitives(&binary, node)[0] as usize].1;
-                tree.root = Collapse::new(&binary, 1).run(&mut tree, part);
-                tree.depth += below;
-                (tree.lo, tree.hi) = (vector(bounds.min), vector(bounds.max));
+        let below = std::mem::replace(&mut tree.depth, 1);
+        let top = sah::build(&mut parts);
+        if let Some(root) = top.first() {
+            let bounds = root.bounds();
+            [tree.lo, tree.hi] = [bounds.lo, bounds.hi].map(|v| Vec3::new(v.x, v.y, v.z));
+        }
+        match roots[..] {
+            [] => tree.cells.push(Cell::node(&[])),
+            [root] => tree.root = root,
+            _ => {
+                let nodes = Collapse::new(&top, 1).run(&mut tree, |_, node| roots[top[node].first as usize]);
+                order::settle(&mut tree, &nodes, &mut odds);
+                tree.root = nodes[0];
             }
         }
+        tree.depth += below;
         tree
     }
 
-    /// How many entries a traversal can have waiting at once.
+    /// How many entries a traversal can have waiting at once, and room for eight more.
     pub(super) fn stack_size(&self) -> usize {
-        (WIDTH - 1) * self.depth + 1
+        (WIDTH - 1) * self.depth + 1 + WIDTH
     }
 
     #[inline(always)]
-    pub(super) fn open(&self, child: Child) -> Opened<'_> {
-        if child.0 & LEAF != 0 {
-            Opened::Leaf(&self.leaves[(child.0 & !LEAF) as usize])
-        } else {
-            Opened::Node(&self.nodes[child.0 as usize])
+    pub(super) fn cell(&self, child: Child) -> &Cell {
+        &self.cells[(child.0 & !LEAF) as usize]
+    }
+
+    /// Has the memory fetch a cell.
+    #[inline(always)]
+    pub(super) fn prefetch(&self, child: Child) {
+        let rows = &self.cell(child).0;
+        for line in 0..5 {
+            fetch(&rows[2 * line]);
         }
     }
-}
 
-impl Node {
-    fn empty() -> Self {
-        let all = |x: f32| Vec3::new(F32x8::splat(x), F32x8::splat(x), F32x8::splat(x));
-        Self { planes: [all(f32::INFINITY), all(f32::NEG_INFINITY)], children: [Child(0); WIDTH] }
-    }
-}
-
-/// The box of a triangle of the geometry.
-pub(super) fn bounds_of(geometry: &Geometry, triangle: u32) -> Aabb {
-    Aabb::from_points(&geometry.world_triangle(triangle).corners.map(|v| glam::Vec3A::new(v.x, v.y, v.z)))
-}
-
-fn vector(v: glam::Vec3A) -> Vec3<f32> {
-    Vec3::new(v.x, v.y, v.z)
-}
-
-/// The bounds and the binary tree of boxes, if there are any.
-fn binary(boxes: &[Aabb]) -> Option<(Aabb, Bvh2)> {
-    let bounds = boxes.iter().copied().reduce(|a, b| a.union(&b))?;
-    let params = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::medium_build() };
-    let mut unused_timer = std::time::Duration::ZERO;
-    Some((bounds, build_bvh2(boxes, params, &mut unused_timer)))
-}
-
-/// How many triangles lie below each binary node.
-fn subtree_sizes(binary: &Bvh2) -> Vec<u32> {
-    let mut sizes = vec![0; binary.nodes.len()];
-    let mut order = Vec::with_capacity(binary.nodes.len());
-    let mut stack = vec![0_usize];
-    while let Some(n) = stack.pop() {
-        order.push(n);
-        if let Some([a, b]) = inner(binary, n) {
-            stack.extend([a, b]);
-        }
-    }
-    for &n in order.iter().rev() {
-        sizes[n] = match inner(binary, n) {
-            Some([a, b]) => sizes[a] + sizes[b],
-            None => binary.nodes[n].prim_count,
-        };
-    }
-    sizes
-}
-
-/// The children of an inner binary node.
-fn inner(binary: &Bvh2, node: usize) -> Option<[usize; 2]> {
-    let n = &binary.nodes[node];
-    (n.prim_count == 0).then_some([n.first_index as usize, n.first_index as usize + 1])
-}
-
-/// The primitives of a leaf of the binary tree.
-fn primitives(binary: &Bvh2, leaf: usize) -> &[u32] {
-    let b = &binary.nodes[leaf];
-    &binary.primitive_indices[b.first_index as usize..(b.first_index + b.prim_count) as usize]
-}
-
-struct Collapse<'a> {
-    binary: &'a Bvh2,
-    sizes: Vec<u32>,
-    /// A subtree of at most so many primitives becomes a leaf.
-    most: usize,
-}
-
-impl<'a> Collapse<'a> {
-    fn new(binary: &'a Bvh2, most: usize) -> Self {
-        Self { binary, sizes: subtree_sizes(binary), most }
+    /// Bytes that the tree occupies.
+    pub(super) fn bytes(&self) -> usize {
+        self.cells.capacity() * size_of::<Cell>()
     }
 
-    /// Appends the wide nodes and returns their root; `leaf` makes a child of a binary node.
-    fn run(&self, tree: &mut Tree, mut leaf: impl FnMut(&mut Tree, usize) -> Child) -> Child {
-        let root = tree.nodes.len();
-        tree.nodes.push(Node::empty());
-        // (binary node, wide node that stands for it, its depth)
-        let mut work = vec![(0_usize, root, 1_usize)];
-        while let Some((binary, wide, depth)) = work.pop() {
-            tree.depth = tree.depth.max(depth);
-            let mut planes = [[f32::INFINITY; WIDTH]; 3].map(|lo| [lo, [f32::NEG_INFINITY; WIDTH]]);
-            let mut children = [Child(0); WIDTH];
-            for (slot, n) in self.children_of(binary).into_iter().enumerate() {
-                let b = &self.binary.nodes[n].aabb;
-                for (axis, planes) in planes.iter_mut().enumerate() {
-                    planes[0][slot] = b.min[axis];
-                    planes[1][slot] = b.max[axis];
-                }
-                children[slot] = if self.sizes[n] as usize <= self.most {
-                    leaf(tree, n)
-                } else {
-                    tree.nodes.push(Node::empty());
-                    work.push((n, tree.nodes.len() - 1, depth + 1));
-                    Child((tree.nodes.len() - 1) as u32)
-                };
-            }
-            let side =
-                |s: usize| Vec3::new(F32x8::new(planes[0][s]), F32x8::new(planes[1][s]), F32x8::new(planes[2][s]));
-            tree.nodes[wide] = Node { planes: [side(0), side(1)], children };
-        }
-        Child(root as u32)
+    /// How many nodes and blocks there are.
+    pub(super) fn cell_count(&self) -> usize {
+        self.cells.len()
     }
 
-    /// The binary nodes that become the children of the wide node for `node`, the largest first.
-    fn children_of(&self, node: usize) -> Vec<usize> {
-        let area = |n: usize| self.binary.nodes[n].aabb.half_area();
-        let mut children = inner(self.binary, node).map_or(vec![node], Vec::from);
-        while children.len() < WIDTH {
-            // How much opening a child is worth: one too large for a leaf must be opened some day, the largest first.
-            let worth = |n: usize| {
-                let [a, b] = inner(self.binary, n)?;
-                let gain = area(n) - area(a) - area(b);
-                let must = self.sizes[n] as usize > self.most;
-                (must || gain > 0.0).then_some((must, if must { area(n) } else { gain }))
-            };
-            let best = children.iter().enumerate().filter_map(|(i, &n)| Some((worth(n)?, i)));
-            let Some((_, i)) = best.max_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))) else { break };
-            let [a, b] = inner(self.binary, children[i]).expect("only inner nodes are worth opening");
-            children[i] = a;
-            children.push(b);
-        }
-        children.sort_by(|&a, &b| area(b).total_cmp(&area(a)));
-        children
+    /// Appends a node, to be filled in, and takes note of how deep it lies.
+    pub(super) fn new_node(&mut self, depth: usize) -> Child {
+        self.depth = self.depth.max(depth);
+        self.cells.push(Cell::node(&[]));
+        Child((self.cells.len() - 1) as u32)
     }
-}
 
-impl Tree {
-    /// Appends a block of the triangles below a binary node; its primitives are places in `part`.
-    fn block(&mut self, geometry: &Geometry, binary: &Bvh2, part: &[u32], node: usize) -> Child {
-        let mut index = Vec::with_capacity(WIDTH);
-        let mut stack = vec![node];
-        while let Some(n) = stack.pop() {
-            match inner(binary, n) {
-                Some(children) => stack.extend(children),
-                None => index.extend(primitives(binary, n).iter().map(|&at| part[at as usize])),
-            }
-        }
-        index.sort_unstable();
-        let index: [u32; WIDTH] = std::array::from_fn(|i| index.get(i).copied().unwrap_or(index[0]));
+    pub(super) fn set_node(&mut self, node: Child, children: &[(Box3, Child)]) {
+        self.cells[node.0 as usize] = Cell::node(children);
+    }
+
+    /// Appends a block of triangles.
+    fn block(&mut self, geometry: &Geometry, triangles: &[u32]) -> Child {
+        let index: [u32; WIDTH] = std::array::from_fn(|i| triangles.get(i).copied().unwrap_or(triangles[0]));
         let corners = index.map(|i| geometry.world_triangle(i).corners);
-        let corners = [0, 1, 2].map(|c| Vec3::from_lanes(|l| corners[l][c]));
-        self.leaves.push(Leaf { corners, index });
-        Child((self.leaves.len() - 1) as u32 | LEAF)
+        let [a, b, c] = [0, 1, 2].map(|c| Vec3::from_lanes(|l| corners[l][c]));
+        self.cells.push(Cell([a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, U32x8::new(index).as_real()]));
+        Child((self.cells.len() - 1) as u32 | LEAF)
+    }
+}
+
+/// Has the memory fetch the line that a value starts in.
+#[inline(always)]
+fn fetch<T>(value: &T) {
+    #[cfg(target_arch = "x86_64")]
+    safe_arch::prefetch_t0(value);
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = value;
+}
+
+/// The triangles below a binary node, in order.
+fn triangles(binary: &[sah::Binary], node: usize) -> Vec<u32> {
+    let mut found = Vec::with_capacity(WIDTH);
+    let mut stack = vec![node];
+    while let Some(n) = stack.pop() {
+        match binary[n].children() {
+            Some(children) => stack.extend(children),
+            None => found.push(binary[n].first),
+        }
+    }
+    found.sort_unstable();
+    found
+}
+
+impl Cell {
+    /// A node of children and their boxes.
+    fn node(children: &[(Box3, Child)]) -> Self {
+        let plane = |pick: fn(&Box3) -> f32| {
+            F32x8::new(std::array::from_fn(|slot| pick(children.get(slot).map_or(&Box3::EMPTY, |(bounds, _)| bounds))))
+        };
+        let order = |octant: usize| {
+            let sign = |axis: usize| if octant >> axis & 1 == 0 { 1.0 } else { -1.0 };
+            let depth = |slot: &usize| {
+                let center = children[*slot].0.center2();
+                center.x * sign(0) + center.y * sign(1) + center.z * sign(2)
+            };
+            let mut slots: Vec<usize> = (0..children.len()).collect();
+            slots.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
+            slots.iter().enumerate().fold(0, |packed, (place, &slot)| packed | (slot as u32) << (3 * place))
+        };
+        // An order that is short repeats slot 0: unused slots must stay unused.
+        let order = |octant: usize| {
+            (children.len()..WIDTH).fold(order(octant), |packed, slot| packed | (slot as u32) << (3 * slot))
+        };
+        Self([
+            plane(|b| b.lo.x),
+            plane(|b| b.hi.x),
+            plane(|b| b.lo.y),
+            plane(|b| b.hi.y),
+            plane(|b| b.lo.z),
+            plane(|b| b.hi.z),
+            U32x8::new(std::array::from_fn(|slot| children.get(slot).map_or(0, |child| child.1.0))).as_real(),
+            U32x8::new(std::array::from_fn(order)).as_real(),
+            F32x8::ZERO,
+            F32x8::ZERO,
+        ])
+    }
+
+    /// The children of a node and their boxes.
+    pub(super) fn slots(&self) -> impl Iterator<Item = (Box3, Child)> {
+        let corner = |side: usize, slot: usize| {
+            let [x, y, z] = [0, 2, 4].map(|axis| self.0[axis + side].lane(slot));
+            Vec4::new(x, y, z, 1.0)
+        };
+        let children = self.children();
+        let slot = move |slot| (Box3 { lo: corner(0, slot), hi: corner(1, slot) }, Child(children.lane(slot)));
+        (0..WIDTH).map(slot).filter(|(bounds, _)| bounds.lo.x <= bounds.hi.x)
     }
 }
 
@@ -279,7 +272,7 @@ mod tests {
     fn a_tree_in_parts_finds_what_brute_finds() {
         let geometry = waves(24);
         let brute = Brute::new(&geometry);
-        for most in [1, 7, 100, 1000, parts::MOST] {
+        for most in [1, 7, 100, 1000, PART] {
             let mut told = Vec::new();
             let tree = Tree::in_parts(&geometry, most, &mut |done| told.push(done));
             assert_eq!(told.last(), Some(&geometry.triangle_count()));

@@ -1,0 +1,302 @@
+//! Rays that have nothing in common: each walks the tree alone, several at a time.
+//!
+//! A ray is tested against eight boxes or eight triangles at once. What then takes the time is waiting: for nodes that are not
+//! in the cache, and for branches that nobody can predict. So [`FLIGHT`] rays are on their way at once and take turns.
+//! Which node a ray visits next is known a whole round before it does, and is fetched meanwhile; and of all rays those at nodes
+//! go first and those at leaves after, so that the kind of a visit is not a branch. When a ray is done the next of the slice takes
+//! its place, so that all places stay taken to the end.
+//!
+//! A node is left without a branch: the children that the ray enters are moved together by a permutation, farthest first, and
+//! stored on the ray's stack all at once. Their order is that of the ray's octant, computed when the tree was built (compare
+//! Ylitie, Karras & Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs"). For rays that look
+//! for any hit it is the order of area: the largest box first, where anything is most likely to be met.
+
+use super::tree::{Cell, Child, Tree};
+use crate::ray::Ray8;
+use crate::triangle::{Beam, Crossing, intersect, intersect_fast};
+use gonio_kernel::{F32x8, Mask8, Real, U32x8, Vec3};
+
+/// How many rays are on their way at once.
+const FLIGHT: usize = 8;
+
+/// What a flight is for.
+pub(super) trait Quest {
+    /// Whether any hit will do.
+    const ANY: bool;
+    /// Looks at the triangles of a leaf that the ray meets; true if the ray need not go on.
+    fn meet(&mut self, walk: &mut Walk, crossing: &Crossing, block: &Cell) -> bool;
+    /// A ray is done: `meet` returned true, or there was no more to visit.
+    fn done(&mut self, walk: &Walk);
+}
+
+/// A ray on its way through the tree.
+pub(super) struct Walk {
+    /// Its number: packet · 8 + lane.
+    pub(super) ray: usize,
+    beam: Beam,
+    /// Which rows of a node are the near planes,
+    near: [usize; 3],
+    /// and which the far ones.
+    far: [usize; 3],
+    octant: usize,
+    t_min: f32,
+    /// Where it ends: the best hit so far, or t_max.
+    t_best: f32,
+    /// Boxes count that it is in between here,
+    from: f32,
+    /// and here.
+    until: f32,
+    /// Edge functions and place of the best hit.
+    pub(super) edges: [f32; 3],
+    pub(super) index: u32,
+    /// Its part of the stacks starts here,
+    base: usize,
+    /// and ends here.
+    top: usize,
+    next: Child,
+}
+
+impl Walk {
+    /// Takes a hit that is better than the best so far.
+    #[inline(always)]
+    pub(super) fn shorten(&mut self, t: f32, index: u32, edges: [f32; 3]) {
+        (self.t_best, self.until) = (t, t + self.beam.slack());
+        (self.index, self.edges) = (index, edges);
+    }
+
+    /// The distance of the best hit.
+    #[inline(always)]
+    pub(super) fn t_best(&self) -> f32 {
+        self.t_best
+    }
+}
+
+/// Subtrees still to be visited by each ray, and where it enters them.
+struct Stacks {
+    children: Vec<u32>,
+    nears: Vec<f32>,
+}
+
+impl Stacks {
+    /// Stores eight of which some count.
+    #[inline(always)]
+    fn store(&mut self, top: usize, children: U32x8, nears: Option<F32x8>) {
+        self.children[top..top + 8].copy_from_slice(&children.to_array());
+        if let Some(nears) = nears {
+            self.nears[top..top + 8].copy_from_slice(&nears.to_array());
+        }
+    }
+}
+
+/// The rays of a slice, one after the other.
+struct Queue<'a> {
+    rays: &'a [Ray8],
+    packet: usize,
+    left: u32,
+    beam: Beam,
+}
+
+impl Tree {
+    /// Sends all live rays through the tree.
+    pub(super) fn fly<const FAST: bool, Q: Quest>(&self, rays: &[Ray8], quest: &mut Q) {
+        let size = self.stack_size();
+        let mut stacks = Stacks { children: vec![0; FLIGHT * size], nears: vec![0.0; FLIGHT * size] };
+        let Some(first) = rays.first() else { return };
+        let mut queue = Queue { rays, packet: 0, left: sound(first).to_bits(), beam: self.beam(first) };
+        let mut walks: [Walk; FLIGHT] = std::array::from_fn(|i| Walk::nowhere(queue.beam, i * size));
+        let mut next = Next::default();
+        for (i, walk) in walks.iter_mut().enumerate() {
+            if self.take(&mut queue, walk) {
+                next.goes_to(i, walk.next);
+            }
+        }
+        while next.any() {
+            let now = std::mem::take(&mut next);
+            for_each_bit(now.node, |i| {
+                let walk = &mut walks[i];
+                walk.visit::<Q>(self.cell(walk.next), &mut stacks);
+                self.pop::<Q>(i, walk, &stacks, &mut next);
+            });
+            for_each_bit(now.block, |i| {
+                let walk = &mut walks[i];
+                let block = self.cell(walk.next);
+                let crossing = test::<FAST>(&walk.beam, &block.corners(), walk.t_min, walk.t_best);
+                if crossing.mask.to_bits() != 0 && quest.meet(walk, &crossing, block) {
+                    next.done |= 1 << i;
+                } else {
+                    self.pop::<Q>(i, walk, &stacks, &mut next);
+                }
+            });
+            for_each_bit(now.nothing, |i| self.pop::<Q>(i, &mut walks[i], &stacks, &mut next));
+            for_each_bit(std::mem::take(&mut next.done), |i| {
+                let walk = &mut walks[i];
+                quest.done(walk);
+                if self.take(&mut queue, walk) {
+                    next.goes_to(i, walk.next);
+                }
+            });
+        }
+    }
+
+    fn beam(&self, ray: &Ray8) -> Beam {
+        Beam::new(ray.origin, ray.dir, self.lo, self.hi)
+    }
+
+    /// Starts the next ray of the queue; false if there is none.
+    fn take(&self, queue: &mut Queue<'_>, walk: &mut Walk) -> bool {
+        while queue.left == 0 {
+            queue.packet += 1;
+            let Some(ray) = queue.rays.get(queue.packet) else { return false };
+            queue.left = sound(ray).to_bits();
+            queue.beam = self.beam(ray);
+        }
+        let lane = queue.left.trailing_zeros() as usize;
+        queue.left &= queue.left - 1;
+        let ray = &queue.rays[queue.packet];
+        walk.start(
+            queue.packet * F32x8::LANES + lane,
+            queue.beam.splat_lane(lane),
+            ray.t_min.lane(lane),
+            ray.t_max.lane(lane),
+        );
+        walk.next = self.root;
+        true
+    }
+
+    /// Takes the next subtree from the stack of ray `i` and has it fetched.
+    #[inline(always)]
+    fn pop<Q: Quest>(&self, i: usize, walk: &mut Walk, stacks: &Stacks, next: &mut Next) {
+        let waits = u32::from(walk.top > walk.base);
+        let top = walk.top - waits as usize;
+        let child = Child(stacks.children[top]);
+        // Not <: a tie may lie behind this box and have the smaller index.
+        let counts = waits & u32::from(Q::ANY || stacks.nears[top] <= walk.until);
+        let block = u32::from(child.is_leaf());
+        (walk.top, walk.next) = (top, child);
+        self.prefetch(child);
+        next.node |= (counts & !block) << i;
+        next.block |= (counts & block) << i;
+        next.nothing |= (waits & !counts) << i;
+        next.done |= (waits ^ 1) << i;
+    }
+}
+
+/// What each ray does next, as sets of rays.
+#[derive(Default)]
+struct Next {
+    node: u32,
+    block: u32,
+    /// What it took from its stack lies behind its hit.
+    nothing: u32,
+    /// Its stack is empty.
+    done: u32,
+}
+
+impl Next {
+    #[inline(always)]
+    fn goes_to(&mut self, i: usize, child: Child) {
+        self.node |= u32::from(!child.is_leaf()) << i;
+        self.block |= u32::from(child.is_leaf()) << i;
+    }
+
+    #[inline(always)]
+    fn any(&self) -> bool {
+        self.node | self.block | self.nothing != 0
+    }
+}
+
+#[inline(always)]
+fn for_each_bit(mut bits: u32, mut f: impl FnMut(usize)) {
+    while bits != 0 {
+        f(bits.trailing_zeros() as usize % FLIGHT);
+        bits &= bits - 1;
+    }
+}
+
+/// Live rays of finite numbers: others meet nothing, and would not find their way among boxes.
+fn sound(ray: &Ray8) -> Mask8 {
+    let finite = |v: Vec3<F32x8>| (v.x.abs() + v.y.abs() + v.z.abs()).lt(F32x8::splat(f32::INFINITY));
+    ray.mask & finite(ray.origin) & finite(ray.dir)
+}
+
+impl Walk {
+    fn nowhere(beam: Beam, base: usize) -> Self {
+        Self {
+            ray: 0,
+            beam,
+            near: [0; 3],
+            far: [0; 3],
+            octant: 0,
+            t_min: 0.0,
+            t_best: 0.0,
+            from: 0.0,
+            until: 0.0,
+            edges: [0.0; 3],
+            index: 0,
+            base,
+            top: base,
+            next: Child(0),
+        }
+    }
+
+    fn start(&mut self, ray: usize, beam: Beam, t_min: f32, t_max: f32) {
+        let [x, y, z] = beam.points_up().map(|up| usize::from(!up));
+        (self.near, self.far, self.octant) =
+            ([x, 2 + y, 4 + z], [x ^ 1, 2 + (y ^ 1), 4 + (z ^ 1)], x | y << 1 | z << 2);
+        (self.ray, self.beam, self.t_min, self.t_best) = (ray, beam, t_min, t_max);
+        (self.from, self.until) = (t_min - self.beam.slack(), t_max + self.beam.slack());
+        (self.index, self.top) = (crate::ray::NO_HIT, self.base);
+    }
+
+    /// Pushes the children of a node whose boxes the ray enters.
+    #[inline(always)]
+    fn visit<Q: Quest>(&mut self, node: &Cell, stacks: &mut Stacks) {
+        let [near, far] = [self.near, self.far].map(|[x, y, z]| Vec3::new(node.plane(x), node.plane(y), node.plane(z)));
+        let [enter, leave] = self.beam.slab(near, far);
+        let entered = enter.max(F32x8::splat(self.from)).le(leave.min(F32x8::splat(self.until)));
+        let children = node.children();
+        if Q::ANY {
+            let bits = entered.to_bits();
+            let order = spread(TOGETHER[bits as usize & 0xff]);
+            stacks.store(self.top, children.permute(order), None);
+            self.top += bits.count_ones() as usize;
+        } else {
+            let order = spread(node.order(self.octant));
+            let bits = entered.permute(order).to_bits();
+            let order = order.permute(spread(TOGETHER[bits as usize & 0xff]));
+            stacks.store(self.top, children.permute(order), Some(enter.to_bits().permute(order).as_real()));
+            self.top += bits.count_ones() as usize;
+        }
+    }
+}
+
+/// Eight numbers below eight, of three bits each, one per lane.
+#[inline(always)]
+fn spread(packed: u32) -> U32x8 {
+    U32x8::splat(packed).shr_each(U32x8::new([0, 3, 6, 9, 12, 15, 18, 21]))
+}
+
+/// For each set of lanes its members, the first lane first, packed for [`spread`]; then zeros.
+const TOGETHER: [u32; 256] = {
+    let mut table = [0; 256];
+    let mut set = 0;
+    while set < 256 {
+        let (mut lane, mut count) = (0, 0);
+        while lane < 8 {
+            if set >> lane & 1 != 0 {
+                table[set] |= (lane as u32) << (3 * count);
+                count += 1;
+            }
+            lane += 1;
+        }
+        set += 1;
+    }
+    table
+};
+
+/// The test that a traversal is compiled with.
+#[inline(always)]
+pub(super) fn test<const FAST: bool>(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: f32, t_max: f32) -> Crossing {
+    let (t_min, t_max) = (F32x8::splat(t_min), F32x8::splat(t_max));
+    if FAST { intersect_fast(beam, corners, t_min, t_max) } else { intersect(beam, corners, t_min, t_max) }
+}
