@@ -9,6 +9,8 @@
 //! Both paths are called the way a caller meets them: through a function that is not inlined, on input that the optimiser
 //! cannot see through. Without that it would turn the scalar loop into a vector loop of its own, and compare lanes with lanes.
 
+#[path = "scenes/random.rs"]
+mod random;
 mod serve;
 
 use criterion::{Criterion, Throughput};
@@ -16,6 +18,7 @@ use gonio_kernel::fresnel::Fresnel;
 use gonio_kernel::lobe::{Conductor, Dielectric, Eon, Lambert, Mirror, Phong, PhongNorm, RoughDielectric};
 use gonio_kernel::microfacet::{Beckmann, Ggx, Reach};
 use gonio_kernel::{F32x8, Lobe, Real, Rgb, Sample, Value, Vec3, for_each_lobe};
+use random::Random;
 use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -238,18 +241,5 @@ fn assert_same_values(one: &Scalars, scalar: &Conductor<f32>, eight: &Lanes, lan
             assert_eq!(bits(alone), bits(together), "direction {} in lane {lane}", 8 * i + lane);
             assert!(alone.pdf > 0.0, "a value of zero proves nothing");
         }
-    }
-}
-
-/// SplitMix64 (Steele, Lea & Flood 2014), as 24-bit numbers in [0, 1).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 40) as f32 / 16_777_216.0
     }
 }
