@@ -37,7 +37,7 @@ pub mod triangle;
 
 pub use brute::Brute;
 #[cfg(feature = "embree")]
-pub use embree::{Embree, EmbreeError};
+pub use embree::{Embree, EmbreeError, EmbreeOptions, EmbreeQuality, EmbreeWidth};
 pub use geometry::{Geometry, GeometryError, Instance, Mesh, TriangleId, WorldTriangle};
 pub use obvhs::Obvhs;
 pub use ray::{Hit, Hit8, NO_HIT, Opacity, Ray8, RayKind};
