@@ -10,6 +10,7 @@ mod embree;
 mod fuzz;
 mod no_std;
 mod peers;
+mod rays;
 mod sources;
 mod tables;
 mod validate;
@@ -26,6 +27,8 @@ cargo xtask peers [--rounds N] [--spp N] [--python PATH]
                                  the Cornell box against Mitsuba 3, in turns; Python with mitsuba is `python3`
 cargo xtask bsdfs [--rounds N] [--only TEXT] [--python PATH]
                                  the lobes against Mitsuba 3, in turns: eight lanes, in-cache batches
+cargo xtask rays [--ratio | --build | --threads | --sizes] [ARG]...
+                                 the speed of ray casting beside Embree, on one core: see benches/accel.rs
 cargo xtask ratio                how much faster eight lanes are than one direction at a time
 cargo xtask fuzz [--executions N] [--target NAME]
                                  N inputs for each parser, 1,000,000 unless told; what broke one stays in target/fuzz
@@ -45,6 +48,7 @@ fn main() -> ExitCode {
         ("no-std", []) => no_std::run(),
         ("peers", rest) => peers::pictures(rest),
         ("bsdfs", rest) => peers::lobes(rest),
+        ("rays", rest) => rays::run(rest),
         ("ratio", []) => cargo::run(cargo::cargo().args(["bench", "--bench", "kernel", "--", "--ratio"])),
         ("fuzz", rest) => fuzz::run(rest),
         ("tables", rest) => tables::run(rest),
