@@ -53,7 +53,7 @@ fn main() -> ExitCode {
         Mode::Threads => accel::threads::run(&options),
         Mode::Sizes => accel::sizes::run(&options),
         Mode::Memory(builder) => accel::build::tell_memory(&options, *builder),
-        Mode::Trace(set) => accel::threads::trace_on_demand(&options, set),
+        Mode::Trace => accel::threads::trace_on_demand(&options),
     };
     match outcome {
         Ok(true) => ExitCode::SUCCESS,

@@ -91,6 +91,24 @@ fn agree(first: &[f32], found: impl Iterator<Item = f32>) -> Result<(), String> 
     Err(format!("{different} of {} rays are answered differently, {allowed} may be", first.len()))
 }
 
+/// The least slack: the same program has moved by as much from run to run.
+const LEAST_SLACK: f64 = 0.05;
+/// The most: however noisy the machine, half of what is asked fails.
+const MOST_SLACK: f64 = 0.25;
+
+/// How much the median of these ratios can be off, relative: its standard error, by the distance of the quartiles as if they
+/// were of a normal distribution, within limits. A run fails where a number misses what is asked by more than twice its slack.
+pub(crate) fn slack(ratios: &[f64]) -> f64 {
+    let deviation = (quantile(ratios, 0.75) - quantile(ratios, 0.25)) / 1.349;
+    let error = (0.5 * std::f64::consts::PI / ratios.len() as f64).sqrt() * deviation;
+    (error / median(ratios)).clamp(LEAST_SLACK, MOST_SLACK)
+}
+
+/// Whether a number that should be at least `asked` misses that by more than twice its slack.
+pub(crate) fn fails(found: f64, asked: f64, slack: f64) -> bool {
+    found < asked * (1.0 - 2.0 * slack)
+}
+
 /// The median: of two in the middle, their mean.
 pub(crate) fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)

@@ -1,7 +1,7 @@
 //! The command line.
 
 use super::contenders::Builder;
-use crate::scenes::{Character, Scene, rays};
+use crate::scenes::{Character, Scene};
 use gonio_accel::Intersect;
 use std::fs;
 use std::path::PathBuf;
@@ -16,7 +16,7 @@ pub(crate) enum Mode {
     /// As a child: build once and tell what memory it took.
     Memory(Builder),
     /// As a child: cast the rays of a set whenever told to.
-    Trace(String),
+    Trace,
 }
 
 /// Everything that can be asked for.
@@ -62,7 +62,7 @@ impl Options {
                 "--threads" => options.mode = Mode::Threads,
                 "--sizes" => options.mode = Mode::Sizes,
                 "--memory" => options.mode = Mode::Memory(Builder::named(value()?)?),
-                "--trace" => options.mode = Mode::Trace(one_of(&rays::NAMES, value()?)?.to_string()),
+                "--trace" => options.mode = Mode::Trace,
                 "--rounds" => options.rounds = number(option, value()?)?,
                 "--rays" => options.rays = number(option, value()?)?,
                 "--triangles" => options.triangles = Some(number(option, value()?)?),

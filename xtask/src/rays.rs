@@ -5,7 +5,8 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-/// Builds the benchmark, and starts it with these arguments on one core; for what needs two cores, on all.
+/// Builds the benchmark, and starts it with these arguments, `--ratio` unless they name something else; on one core, but for
+/// what needs two.
 pub(crate) fn run(arguments: &[String]) -> Outcome {
     let mut build = cargo();
     build.args(["bench", "--bench", "accel", "--no-run", "--message-format", "json-render-diagnostics"]);
@@ -29,7 +30,8 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
             program(built)
         }
     };
-    let mode = if arguments.is_empty() { Some("--ratio") } else { None };
+    let modes = ["--ratio", "--build", "--threads", "--sizes"];
+    let mode = if arguments.iter().any(|argument| modes.contains(&argument.as_str())) { None } else { Some("--ratio") };
     run_program(bench.args(mode).args(arguments))
 }
 

@@ -97,17 +97,21 @@ pub struct EmbreeOptions {
 /// A scene of Embree, and which mesh each of its geometries shows.
 #[derive(Debug)]
 pub struct Embree {
-    scene: Arc<Owned<RTCSceneTy>>,
+    scene: Arc<Committed>,
     /// Mesh of each instance; the geometry's number is the instance's.
     meshes: Vec<u32>,
     /// For coherent rays, and for others.
     widths: [EmbreeWidth; 2],
 }
 
-// SAFETY: a committed scene is only asked, which Embree allows from any number of threads, and released once, from any.
-unsafe impl Send for Embree {}
-// SAFETY: as above; `&Embree` gives no way to change the scene.
-unsafe impl Sync for Embree {}
+/// A scene that is only asked from here on.
+#[derive(Debug)]
+struct Committed(Owned<RTCSceneTy>);
+
+// SAFETY: Embree allows a committed scene to be asked from any number of threads, and released once, from any.
+unsafe impl Send for Committed {}
+// SAFETY: as above; nobody who has a `&Committed` changes the scene.
+unsafe impl Sync for Committed {}
 
 impl Embree {
     /// Builds the scene with a tree of medium quality: O(n log n), deterministic, on the calling thread.
@@ -157,7 +161,7 @@ impl Embree {
         let meshes = geometry.instances().iter().map(|instance| instance.mesh).collect();
         let wide = if has_avx512() { EmbreeWidth::Sixteen } else { EmbreeWidth::Eight };
         let widths = options.width.map_or([wide, EmbreeWidth::Eight], |width| [width; 2]);
-        Ok(Self { scene: Arc::new(scene), meshes, widths })
+        Ok(Self { scene: Arc::new(Committed(scene)), meshes, widths })
     }
 
     /// The same scene, whose tree both share, asked by another width.
@@ -227,7 +231,7 @@ impl Embree {
             for part in 0..Query::<N>::PARTS {
                 if query.take(rays, &alive, part) {
                     // SAFETY: the scene is committed, the arguments are filled.
-                    unsafe { query.intersect(self.scene.handle, &mut arguments) };
+                    unsafe { query.intersect(self.scene.0.handle, &mut arguments) };
                     query.give(&mut answers[..packets], part);
                 }
             }
@@ -261,7 +265,7 @@ impl Embree {
             for part in 0..Query::<N>::PARTS {
                 if query.take(rays, &alive, part) {
                     // SAFETY: as in `closest_by`. The question lives until the calls have returned, and only they use it.
-                    unsafe { query.occluded(self.scene.handle, &mut arguments) };
+                    unsafe { query.occluded(self.scene.0.handle, &mut arguments) };
                     query.give_t(&mut answers[..packets], part);
                 }
             }
