@@ -11,7 +11,7 @@
 //! of triangles at equal t any may win. [`Intersect::Robust`] sets Embree's flag of that name: edge functions from exact
 //! vertices, watertight. [`Intersect::Fast`] leaves it out: Möller and Trumbore's test with the same leaks as ours.
 //! A ray whose origin lies exactly in a triangle's plane would hit it at t = 0, where our own test says no: on a floor at
-//! y = 0 no rounding lifts the origins of secondary rays. So Embree is asked for hits beyond the smallest normal number; where
+//! y = 0 no rounding lifts the origins of secondary rays. So Embree is asked for hits beyond 1e-20; where
 //! the plane is only met up to rounding, those origins are off it by more than that.
 //!
 //! This module and its files alone in the workspace have `unsafe`. What must hold for the calls:

@@ -11,6 +11,10 @@ use std::mem::{MaybeUninit, offset_of};
 /// Coordinates from here on are infinite to Embree.
 const FAR: f32 = 1.8e18;
 
+/// Hits must be beyond this: not 0, see embree.rs, and not the smallest normal number either. Embree multiplies t_min by twice a triangle's
+/// area, and a product that is denormal costs the processor some hundred cycles.
+const LEAST_T: f32 = 1e-20;
+
 /// A record with room after it: newer libraries write more than the bindings say.
 #[repr(C, align(64))]
 pub(super) struct Padded<T> {
@@ -135,7 +139,7 @@ impl<const N: usize> Query<N> {
         for (packet, ray) in rays.iter().enumerate() {
             let (at, bits) = (packet * F32x8::LANES + part, live[packet].to_bits());
             any |= bits;
-            let t_min = ray.t_min.max(F32x8::splat(f32::MIN_POSITIVE)); // not 0, see embree.rs
+            let t_min = ray.t_min.max(F32x8::splat(LEAST_T));
             for (field, lanes) in self.origin.iter_mut().zip([ray.origin.x, ray.origin.y, ray.origin.z]) {
                 put(field, at, lanes.to_array());
             }
