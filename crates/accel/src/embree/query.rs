@@ -140,17 +140,19 @@ impl<const N: usize> Query<N> {
             let (at, bits) = (packet * F32x8::LANES + part, live[packet].to_bits());
             any |= bits;
             let t_min = ray.t_min.max(F32x8::splat(LEAST_T));
-            for (field, lanes) in self.origin.iter_mut().zip([ray.origin.x, ray.origin.y, ray.origin.z]) {
-                put(field, at, lanes.to_array());
+            for (field, lanes) in self.origin.iter_mut().zip([&ray.origin.x, &ray.origin.y, &ray.origin.z]) {
+                put(field, at, lanes);
             }
-            for (field, lanes) in self.dir.iter_mut().zip([ray.dir.x, ray.dir.y, ray.dir.z]) {
-                put(field, at, lanes.to_array());
+            for (field, lanes) in self.dir.iter_mut().zip([&ray.dir.x, &ray.dir.y, &ray.dir.z]) {
+                put(field, at, lanes);
             }
-            put(&mut self.t_min, at, t_min.to_array());
-            put(&mut self.time, at, ray.time.to_array());
-            put(&mut self.t_max, at, ray.t_max.to_array());
-            let valid = U32x8::select(live[packet], U32x8::splat(u32::MAX), U32x8::splat(0));
-            put(&mut self.valid.0, at, valid.to_array());
+            put(&mut self.t_min, at, &t_min);
+            put(&mut self.time, at, &ray.time);
+            put(&mut self.t_max, at, &ray.t_max);
+            if N > 1 {
+                let valid = U32x8::select(live[packet], U32x8::splat(u32::MAX), U32x8::splat(0));
+                self.valid.0[at..at + F32x8::LANES].copy_from_slice(&valid.to_array());
+            }
         }
         let given = rays.len() * F32x8::LANES;
         if given < N {
@@ -221,11 +223,11 @@ impl<const N: usize> Query<N> {
 
 /// Eight lanes into a field, from `at` on; lane `at` alone into a field of one.
 #[inline(always)]
-fn put<T: Copy, const N: usize>(field: &mut [T; N], at: usize, lanes: [T; F32x8::LANES]) {
+fn put<const N: usize>(field: &mut [f32; N], at: usize, lanes: &F32x8) {
     if N == 1 {
-        field[0] = lanes[at & 7];
+        field[0] = lanes.lane(at); // straight from the packet, which lies in memory
     } else {
-        field[at..at + F32x8::LANES].copy_from_slice(&lanes);
+        field[at..at + F32x8::LANES].copy_from_slice(&lanes.to_array());
     }
 }
 
