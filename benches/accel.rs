@@ -8,9 +8,9 @@
 //! cargo xtask rays --sizes   [--most N] [--svg FILE] [--json FILE]     cost of a ray from 1000 triangles to ten million
 //! ```
 //!
-//! All but criterion's rows take `--scene NAME` (atrium, terrain, hair, scans), `--rays K` (camera rays per scene; other sets follow
-//! from them), `--intersect robust|fast`, and `--triangles N` for scenes of another size. `cargo xtask rays` builds with Embree
-//! where it is there, and keeps the process on one core; `cargo bench --bench accel -- --ratio` does neither.
+//! All but criterion's rows take `--scene NAME` (atrium, terrain, hair, scans), `--rays K` (camera rays per scene; other sets
+//! follow from them), `--intersect robust|fast`, and `--triangles N` for scenes of another size. `cargo xtask rays` builds with
+//! Embree where it is there, and keeps the process on one core; `cargo bench --bench accel -- --ratio` does neither.
 //!
 //! **How.** All methods of a ray set take turns in one process, round after round, so that a machine that slows down slows all of
 //! them; a round before the first warms the caches and is not counted; the median counts. Every method reads the same

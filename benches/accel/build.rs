@@ -1,9 +1,9 @@
 //! What a tree costs: time, memory, and after how many rays it has paid.
 //!
-//! Builders take turns on one thread; the median counts. Memory is Linux' own count of a child process that makes the scene, forgets what the
-//! peak was so far, and builds one tree: what it then has more than before, and the most it had in between. A tree pays
-//! when building and casting together take less time than with Embree of medium quality; rays are the diffuse ones, because
-//! those are most of a picture.
+//! Builders take turns on one thread; the median counts. Memory is Linux' own count of a child process that makes the scene,
+//! forgets what the peak was so far, and builds one tree: what it then has more than before, and the most it had in between. A
+//! tree pays when building and casting together take less time than with Embree of medium quality; rays are the diffuse ones,
+//! because those are most of a picture.
 
 use super::contenders::{Builder, Contender, Method, Side, warn_if_alone};
 use super::measure::{fails, median, slack, take_turns};
@@ -15,7 +15,8 @@ use std::fs;
 use std::process::Command;
 use std::time::Instant;
 
-/// What is asked of the builder that speeds are compared with: its time over that of Embree's medium quality, and bytes per triangle.
+/// What is asked of the builder that speeds are compared with: its time over that of Embree's medium quality, and bytes per
+/// triangle.
 const TIMES: f64 = 4.0;
 const RESIDENT: f64 = 80.0;
 const PEAK: f64 = 250.0;

@@ -7,7 +7,8 @@ use gonio_kernel::{F32x8, Mask8};
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Rays that may be answered differently, of one: hits of rays that graze an edge are anybody's, and the triangle tests are not the same.
+/// Rays that may be answered differently, of one: hits of rays that graze an edge are anybody's, and the triangle tests are not
+/// the same.
 const DIFFERENT: f64 = 1e-4;
 /// Distances that count as the same, relative.
 const SAME: f32 = 1e-4;

@@ -1,11 +1,11 @@
 //! Speed over Embree's, scene by ray set, and what is asked of it.
 //!
-//! **Asked**: the geometric mean over the scenes with the fast tests at least 0.95 for primary rays and 1.05 for each other set; with the
-//! robust tests at least 1.0 over everything; no cell below 0.8. **Hoped for**: 1.1 in every cell.
+//! **Asked**: the geometric mean over the scenes with the fast tests at least 0.95 for primary rays and 1.05 for each other
+//! set; with the robust tests at least 1.0 over everything; no cell below 0.8. **Hoped for**: 1.1 in every cell.
 //!
-//! **What fails.** Every number below what is asked is marked, but a busy machine must not fail a run by itself: the run fails where a
-//! number misses what is asked by more than twice its slack, which is the standard error of its median over the rounds and no less than 5 %;
-//! see [`slack`]. A mean's slack is the mean of its cells'.
+//! **What fails.** Every number below what is asked is marked, but a busy machine must not fail a run by itself: the run fails
+//! where a number misses what is asked by more than twice its slack, which is the standard error of its median over the rounds
+//! and no less than 5 %; see [`slack`]. A mean's slack is the mean of its cells'.
 
 use super::contenders::{Builder, Side, warn_if_alone};
 use super::measure::{Timed, best, fails, median, mrays, slack, take_turns};
@@ -154,7 +154,8 @@ fn judge(test: Intersect, cells: &[Cell]) -> Vec<Verdict> {
     verdicts
 }
 
-/// The table of a test: millions of rays per second, ours and Embree's, and their ratio; ! below the least, + where the goal is reached.
+/// The table of a test: millions of rays per second, ours and Embree's, and their ratio; ! below the least, + where the goal is
+/// reached.
 fn print(test: Intersect, cells: &[Cell]) {
     let of_test =
         |set: &'static str| cells.iter().filter(move |cell| cell.intersect == test.to_string() && cell.set == set);

@@ -1,8 +1,8 @@
 //! The cost of a ray against the number of triangles, of a height field and of hair.
 //!
-//! Rays are random ones: how many of them do what does not depend on how finely a surface is divided. Over the sizes measured costs grow about like a
-//! power of the number of triangles, and the exponent, fitted to the logarithms, is a curve's steepness. It must not be more than Embree's
-//! by more than twice the standard error of their difference.
+//! Rays are random ones: how many of them do what does not depend on how finely a surface is divided. Over the sizes measured
+//! costs grow about like a power of the number of triangles, and the exponent, fitted to the logarithms, is a curve's
+//! steepness. It must not be more than Embree's by more than twice the standard error of their difference.
 
 use super::contenders::{Builder, Side, warn_if_alone};
 use super::measure::{best, median, take_turns};

@@ -1,8 +1,8 @@
 //! Two threads that share a tree against two processes that do not.
 //!
-//! What two threads lose is what they do to each other: lines of the cache that both write, locks, an allocator in the way. What they lose to the
-//! memory they would lose as two processes as well, so those are the measure: each casts the same rays, at the same time, in
-//! turns with the two threads. The machine needs two free cores.
+//! What two threads lose is what they do to each other: lines of the cache that both write, locks, an allocator in the way.
+//! What they lose to the memory they would lose as two processes as well, so those are the measure: each casts the same rays,
+//! at the same time, in turns with the two threads. The machine needs two free cores.
 
 use super::contenders::{Builder, Method};
 use super::measure::{Answers, cast, fails, median, slack};

@@ -1,5 +1,5 @@
-//! A closed hall, 40 × 16 × 20 units: walls of two triangles each, two rows of twelve fluted columns with arches from each to the next,
-//! four hangings of cloth, and boxes on the floor.
+//! A closed hall, 40 × 16 × 20 units: walls of two triangles each, two rows of twelve fluted columns with arches from each to
+//! the next, four hangings of cloth, and boxes on the floor.
 
 use super::{Camera, Random, Scene, Sheets, assemble, lamp};
 use gonio_kernel::Vec3;

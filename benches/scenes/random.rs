@@ -23,8 +23,8 @@ pub(crate) fn at_lattice([x, y, z]: [i32; 3]) -> f32 {
     Random(part(x, 0x8da6_b343) ^ part(y, 0xd816_3841_0001) ^ part(z, 0xcb1a_b31f_0000_0001)).next()
 }
 
-/// Several octaves of value noise (Perlin & Hoffert 1989 call the sum a fractal): each has twice the frequency of the one before and half of
-/// its height. In [0, 2).
+/// Several octaves of value noise (Perlin & Hoffert 1989 call the sum a fractal): each has twice the frequency of the one
+/// before and half of its height. In [0, 2).
 #[allow(dead_code, reason = "a bench that only needs random numbers includes this file alone")]
 pub(crate) fn fractal(mut p: Vec3<f32>, octaves: u32) -> f32 {
     let (mut sum, mut height) = (0.0, 1.0);

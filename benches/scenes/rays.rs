@@ -1,7 +1,7 @@
 //! The rays that a renderer casts at a scene, in eights.
 //!
-//! Camera rays go by tiles of 8 × 4 pixels, packets of 4 × 2, so that four packets in a row are a tile. Rays that start at the hits
-//! of camera rays keep their order and close ranks where a camera ray missed: packets are full but for the last, and
+//! Camera rays go by tiles of 8 × 4 pixels, packets of 4 × 2, so that four packets in a row are a tile. Rays that start at the
+//! hits of camera rays keep their order and close ranks where a camera ray missed: packets are full but for the last, and
 //! neighbours stay neighbours.
 
 use super::{Random, Scene};

@@ -1,8 +1,9 @@
 //! Nine scans in a box of 12 × 8 × 12 units, each turned another way.
 //!
-//! The scan is the Stanford bunny (Turk & Levoy 1994), 69,630 triangles, if the test data are there: `scenes/meshes/stanford-bunny.obj` in the
-//! folder that `GONIO_DATA` names, or else in `../shared/data` beside the repository. Otherwise it is a lump with the bunny's
-//! irregularity: triangles of changing size, none like its neighbour, over a surface of bumps upon bumps.
+//! The scan is the Stanford bunny (Turk & Levoy 1994), 69,630 triangles, if the test data are there:
+//! `scenes/meshes/stanford-bunny.obj` in the folder that `GONIO_DATA` names, or else in `../shared/data` beside the repository.
+//! Otherwise it is a lump with the bunny's irregularity: triangles of changing size, none like its neighbour, over a surface of
+//! bumps upon bumps.
 
 use super::random::{at_lattice, fractal};
 use super::{Camera, Random, Scene, Sheets, assemble, lamp};
@@ -52,7 +53,8 @@ fn scene(name: &str, scan: &Mesh) -> Scene {
     assemble(name, sheets, camera, lamp(Vec3::new(6.0, 7.9, 6.0), 2.0, 2.0))
 }
 
-/// A closed surface of about so many triangles: the sides of a cube blown up to a sphere, with bumps, and vertices pushed about within it.
+/// A closed surface of about so many triangles: the sides of a cube blown up to a sphere, with bumps, and vertices pushed about
+/// within it.
 fn lump(triangles: usize) -> Mesh {
     let squares = (triangles as f32 / 12.0).sqrt().round().max(1.0);
     let mut sheets = Sheets::default();

@@ -2,10 +2,10 @@
 //! Ray Tracing").
 //!
 //! Every instance becomes one triangle geometry of Embree with the world vertices that all backends see, over an index buffer
-//! that the instances of a mesh share. Rays go through in the order in which they come, by [`EmbreeWidth`]. The scene is built by
-//! one thread, so that the tree, and with it the triangle that a ray on a shared edge reports, is the same on every run; which
-//! vector instructions Embree then uses it decides itself. The caller's floating-point mode stays as it is: Embree's advice to flush denormals
-//! is for speed, and would change the caller's arithmetic.
+//! that the instances of a mesh share. Rays go through in the order in which they come, by [`EmbreeWidth`]. The scene is built
+//! by one thread, so that the tree, and with it the triangle that a ray on a shared edge reports, is the same on every run;
+//! which vector instructions Embree then uses it decides itself. The caller's floating-point mode stays as it is: Embree's
+//! advice to flush denormals is for speed, and would change the caller's arithmetic.
 //!
 //! **Agreement.** Embree has its own triangle tests, so hits are not those of `Brute` to the last bit: t is, up to rounding, and
 //! of triangles at equal t any may win. [`Intersect::Robust`] sets Embree's flag of that name: edge functions from exact

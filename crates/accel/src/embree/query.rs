@@ -11,8 +11,8 @@ use std::mem::{MaybeUninit, offset_of};
 /// Coordinates from here on are infinite to Embree.
 const FAR: f32 = 1.8e18;
 
-/// Hits must be beyond this: not 0, see embree.rs, and not the smallest normal number either. Embree multiplies t_min by twice a triangle's
-/// area, and a product that is denormal costs the processor some hundred cycles.
+/// Hits must be beyond this: not 0, see embree.rs, and not the smallest normal number either. Embree multiplies t_min by twice
+/// a triangle's area, and a product that is denormal costs the processor some hundred cycles.
 const LEAST_T: f32 = 1e-20;
 
 /// A record with room after it: newer libraries write more than the bindings say.
