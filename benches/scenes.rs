@@ -15,6 +15,7 @@ mod atrium;
 mod hair;
 mod random;
 pub(crate) mod rays;
+pub(crate) mod room;
 mod scans;
 mod sheet;
 mod terrain;

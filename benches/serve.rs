@@ -1,11 +1,11 @@
 //! Batches for a partner in another program, which `benches/bsdfs.py` is: one line `ROW PASSES` on stdin is one answer on
 //! stdout, the nanoseconds per direction of the median of that many passes over the batch.
 //!
-//! A batch is [`BATCH`](super::BATCH) directions in arrays, read and written in eights within the second-level cache. The
+//! A batch is [`BATCH`](crate::lobes::BATCH) directions in arrays, read and written in eights within the second-level cache. The
 //! parameters of the lobe are hidden from the optimiser once per pass, its kind is not: as in a kernel that a just-in-time
 //! compiler made for one kind of material.
 
-use super::{BATCH, Lanes};
+use crate::lobes::{BATCH, Lanes};
 use gonio_kernel::fresnel::Fresnel;
 use gonio_kernel::lobe::{Conductor, Lambert, RoughDielectric};
 use gonio_kernel::microfacet::{Beckmann, Ggx};

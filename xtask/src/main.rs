@@ -3,6 +3,7 @@
 
 #![forbid(unsafe_code)]
 
+mod bench;
 mod cargo;
 mod ci;
 mod elf;
@@ -27,6 +28,11 @@ cargo xtask peers [--rounds N] [--spp N] [--python PATH]
                                  the Cornell box against Mitsuba 3, in turns; Python with mitsuba is `python3`
 cargo xtask bsdfs [--rounds N] [--only TEXT] [--python PATH]
                                  the lobes against Mitsuba 3, in turns: eight lanes, in-cache batches
+cargo xtask bench                all ratios of times, only reported: `ratio`, `bsdfs`, `rays`
+cargo xtask bench --gate         count instructions by callgrind and compare with benches/limits.toml; exit code 3 if a row
+                                 rose beyond its limit, is new or is missing
+cargo xtask bench --accept REASON [--only ROW]
+                                 write what is counted now into benches/limits.toml, with the reason
 cargo xtask rays [--ratio | --build | --threads | --sizes] [ARG]...
                                  the speed of ray casting beside Embree, on one core: see benches/accel.rs
 cargo xtask ratio                how much faster eight lanes are than one direction at a time
@@ -48,8 +54,9 @@ fn main() -> ExitCode {
         ("no-std", []) => no_std::run(),
         ("peers", rest) => peers::pictures(rest),
         ("bsdfs", rest) => peers::lobes(rest),
+        ("bench", rest) => bench::run(rest),
+        ("ratio", []) => bench::ratio(),
         ("rays", rest) => rays::run(rest),
-        ("ratio", []) => cargo::run(cargo::cargo().args(["bench", "--bench", "kernel", "--", "--ratio"])),
         ("fuzz", rest) => fuzz::run(rest),
         ("tables", rest) => tables::run(rest),
         ("ci", []) => ci::run(),

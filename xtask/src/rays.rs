@@ -1,21 +1,20 @@
 //! `cargo xtask rays`: the speed of ray casting, by `benches/accel.rs`, beside Embree if it is there.
 
-use crate::cargo::{Outcome, cargo, must, program, root, run as run_program};
+use crate::cargo::{Outcome, built, cargo, must, program, root, run as run_program};
 use std::ffi::OsString;
-use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 /// Builds the benchmark, and starts it with these arguments, `--ratio` unless they name something else; on one core, but for
 /// what needs two.
 pub(crate) fn run(arguments: &[String]) -> Outcome {
     let mut build = cargo();
-    build.args(["bench", "--bench", "accel", "--no-run", "--message-format", "json-render-diagnostics"]);
+    build.args(["bench", "--bench", "accel", "--no-run"]);
     if root().join("target/embree/config.toml").exists() || std::env::var_os("EMBREE_LIB_DIR").is_some() {
         build.args(["--features", "embree"]);
     } else {
         eprintln!("rays: Embree is not there (`cargo xtask embree` gets it); obvhs is measured alone");
     }
-    let built = built(&mut build)?;
+    let built = built(&mut build, "accel")?;
     let pinned = !arguments.iter().any(|argument| argument == "--threads");
     let mut bench = match last_core().filter(|_| pinned) {
         Some(core) => {
@@ -33,19 +32,6 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
     let modes = ["--ratio", "--build", "--threads", "--sizes"];
     let mode = if arguments.iter().any(|argument| modes.contains(&argument.as_str())) { None } else { Some("--ratio") };
     run_program(bench.args(mode).args(arguments))
-}
-
-/// The program that cargo builds, by what cargo says of it.
-fn built(build: &mut Command) -> Result<PathBuf, String> {
-    let output = build.stderr(Stdio::inherit()).output().map_err(|e| format!("rays: cannot start cargo: {e}"))?;
-    if !output.status.success() {
-        return Err("rays: the benchmark cannot be built".to_owned());
-    }
-    let text = String::from_utf8_lossy(&output.stdout);
-    // Of the messages, one a line, only those on programs have this field with a text; paths of ours need no escapes.
-    let paths = text.lines().filter_map(|line| line.split_once("\"executable\":\"")?.1.split_once('"'));
-    let path = paths.map(|(path, _)| PathBuf::from(path)).find(|path| path.exists());
-    path.ok_or_else(|| "rays: cargo does not say where the benchmark is".to_owned())
 }
 
 /// The last core that this process may use: interrupts prefer the first. `None` without `taskset`.
