@@ -126,16 +126,16 @@ impl Beam {
         [a.dot(self.across[0]), a.dot(self.across[1])]
     }
 
-    /// Whether the directions point up each axis, for a beam of one ray: chooses which planes are near.
+    /// The rays whose directions point down each axis, as sets of lanes: chooses which planes are near.
     #[inline(always)]
-    pub fn points_up(&self) -> [bool; 3] {
-        [self.inverse.x, self.inverse.y, self.inverse.z].map(|i| i.lane(0) > 0.0)
+    pub fn points_down(&self) -> [u32; 3] {
+        [self.inverse.x, self.inverse.y, self.inverse.z].map(|i| i.lt(F32x8::ZERO).to_bits())
     }
 
-    /// By how much a hit's t may lie outside the slab interval of a box around the triangle, for a beam of one ray.
+    /// By how much a hit's t may lie outside the slab interval of a box around the triangle.
     #[inline(always)]
-    pub fn slack(&self) -> f32 {
-        self.slack.lane(0)
+    pub fn slack(&self) -> F32x8 {
+        self.slack
     }
 
     /// The padded slab interval \[t_near, t_far\] of boxes whose near and far planes are given.

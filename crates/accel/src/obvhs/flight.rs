@@ -12,12 +12,12 @@
 //! for any hit it is the order of area: the largest box first, where anything is most likely to be met.
 
 use super::tree::{Cell, Child, Tree};
-use crate::ray::Ray8;
+use crate::ray::{NO_HIT, Ray8};
 use crate::triangle::{Beam, Crossing, intersect, intersect_fast};
 use gonio_kernel::{F32x8, Mask8, Real, U32x8, Vec3};
 
 /// How many rays are on their way at once.
-const FLIGHT: usize = 8;
+const FLIGHT: usize = 16;
 
 /// What a flight is for.
 pub(super) trait Quest {
@@ -40,6 +40,7 @@ pub(super) struct Walk {
     far: [usize; 3],
     octant: usize,
     t_min: f32,
+    slack: f32,
     /// Where it ends: the best hit so far, or t_max.
     t_best: f32,
     /// Boxes count that it is in between here,
@@ -60,7 +61,7 @@ impl Walk {
     /// Takes a hit that is better than the best so far.
     #[inline(always)]
     pub(super) fn shorten(&mut self, t: f32, index: u32, edges: [f32; 3]) {
-        (self.t_best, self.until) = (t, t + self.beam.slack());
+        (self.t_best, self.until) = (t, t + self.slack);
         (self.index, self.edges) = (index, edges);
     }
 
@@ -91,9 +92,14 @@ impl Stacks {
 /// The rays of a slice, one after the other.
 struct Queue<'a> {
     rays: &'a [Ray8],
-    packet: usize,
+    /// How many packets have been begun.
+    begun: usize,
+    /// The lanes of the last one that have not.
     left: u32,
+    /// What their tests need,
     beam: Beam,
+    /// and the signs of their directions, as sets of lanes.
+    down: [u32; 3],
 }
 
 impl Tree {
@@ -102,82 +108,95 @@ impl Tree {
         let size = self.stack_size();
         let mut stacks = Stacks { children: vec![0; FLIGHT * size], nears: vec![0.0; FLIGHT * size] };
         let Some(first) = rays.first() else { return };
-        let mut queue = Queue { rays, packet: 0, left: sound(first).to_bits(), beam: self.beam(first) };
-        let mut walks: [Walk; FLIGHT] = std::array::from_fn(|i| Walk::nowhere(queue.beam, i * size));
+        let beam = Beam::new(first.origin, first.dir, self.lo, self.hi);
+        let mut queue = Queue { rays, begun: 0, left: 0, beam, down: [0; 3] };
+        let mut walks: [Walk; FLIGHT] = std::array::from_fn(|i| Walk::nowhere(beam, i * size));
         let mut next = Next::default();
         for (i, walk) in walks.iter_mut().enumerate() {
             if self.take(&mut queue, walk) {
-                next.goes_to(i, walk.next);
+                next.goes_to(1 << i, walk.next);
             }
         }
         while next.any() {
             let now = std::mem::take(&mut next);
-            for_each_bit(now.node, |i| {
+            for_each_bit(now.node, |i, bit| {
                 let walk = &mut walks[i];
                 walk.visit::<Q>(self.cell(walk.next), &mut stacks);
-                self.pop::<Q>(i, walk, &stacks, &mut next);
+                self.pop::<Q>(bit, walk, &stacks, &mut next);
             });
-            for_each_bit(now.block, |i| {
+            for_each_bit(now.block, |i, bit| {
                 let walk = &mut walks[i];
                 let block = self.cell(walk.next);
                 let crossing = test::<FAST>(&walk.beam, &block.corners(), walk.t_min, walk.t_best);
                 if crossing.mask.to_bits() != 0 && quest.meet(walk, &crossing, block) {
-                    next.done |= 1 << i;
+                    next.done |= bit;
                 } else {
-                    self.pop::<Q>(i, walk, &stacks, &mut next);
+                    self.pop::<Q>(bit, walk, &stacks, &mut next);
                 }
             });
-            for_each_bit(now.nothing, |i| self.pop::<Q>(i, &mut walks[i], &stacks, &mut next));
-            for_each_bit(std::mem::take(&mut next.done), |i| {
+            for_each_bit(now.nothing, |i, bit| self.pop::<Q>(bit, &mut walks[i], &stacks, &mut next));
+            for_each_bit(std::mem::take(&mut next.done), |i, bit| {
                 let walk = &mut walks[i];
                 quest.done(walk);
                 if self.take(&mut queue, walk) {
-                    next.goes_to(i, walk.next);
+                    next.goes_to(bit, walk.next);
                 }
             });
         }
     }
 
-    fn beam(&self, ray: &Ray8) -> Beam {
-        Beam::new(ray.origin, ray.dir, self.lo, self.hi)
-    }
-
     /// Starts the next ray of the queue; false if there is none.
+    #[inline(always)]
     fn take(&self, queue: &mut Queue<'_>, walk: &mut Walk) -> bool {
-        while queue.left == 0 {
-            queue.packet += 1;
-            let Some(ray) = queue.rays.get(queue.packet) else { return false };
-            queue.left = sound(ray).to_bits();
-            queue.beam = self.beam(ray);
+        if queue.left == 0 && !self.begin(queue) {
+            return false;
         }
         let lane = queue.left.trailing_zeros() as usize;
         queue.left &= queue.left - 1;
-        let ray = &queue.rays[queue.packet];
-        walk.start(
-            queue.packet * F32x8::LANES + lane,
-            queue.beam.splat_lane(lane),
-            ray.t_min.lane(lane),
-            ray.t_max.lane(lane),
-        );
-        walk.next = self.root;
+        let packet = queue.begun - 1;
+        let [x, y, z] = queue.down.map(|down| (down >> lane & 1) as usize);
+        (walk.near, walk.far) = ([x, 2 + y, 4 + z], [x ^ 1, 2 + (y ^ 1), 4 + (z ^ 1)]);
+        walk.octant = x | y << 1 | z << 2;
+        walk.ray = packet * F32x8::LANES + lane;
+        walk.beam = queue.beam.splat_lane(lane);
+        (walk.t_min, walk.t_best) = (queue.rays[packet].t_min.lane(lane), queue.rays[packet].t_max.lane(lane));
+        walk.slack = queue.beam.slack().lane(lane);
+        (walk.from, walk.until) = (walk.t_min - walk.slack, walk.t_best + walk.slack);
+        (walk.index, walk.top, walk.next) = (NO_HIT, walk.base, self.root);
         true
     }
 
-    /// Takes the next subtree from the stack of ray `i` and has it fetched.
+    /// Begins the next packet that has live rays; false if there is none.
+    #[inline(never)]
+    fn begin(&self, queue: &mut Queue<'_>) -> bool {
+        loop {
+            let Some(ray) = queue.rays.get(queue.begun) else { return false };
+            queue.begun += 1;
+            queue.left = sound(ray).to_bits();
+            if queue.left != 0 {
+                queue.beam = Beam::new(ray.origin, ray.dir, self.lo, self.hi);
+                queue.down = queue.beam.points_down();
+                return true;
+            }
+        }
+    }
+
+    /// Takes the next subtree from a ray's stack and has it fetched.
     #[inline(always)]
-    fn pop<Q: Quest>(&self, i: usize, walk: &mut Walk, stacks: &Stacks, next: &mut Next) {
-        let waits = u32::from(walk.top > walk.base);
-        let top = walk.top - waits as usize;
+    fn pop<Q: Quest>(&self, bit: u32, walk: &mut Walk, stacks: &Stacks, next: &mut Next) {
+        let is_empty = walk.top == walk.base;
+        let top = walk.top - usize::from(!is_empty);
         let child = Child(stacks.children[top]);
         // Not <: a tie may lie behind this box and have the smaller index.
-        let counts = waits & u32::from(Q::ANY || stacks.nears[top] <= walk.until);
-        let block = u32::from(child.is_leaf());
+        let counts = Q::ANY || stacks.nears[top] <= walk.until;
         (walk.top, walk.next) = (top, child);
         self.prefetch(child);
-        next.node |= (counts & !block) << i;
-        next.block |= (counts & block) << i;
-        next.nothing |= (waits & !counts) << i;
-        next.done |= (waits ^ 1) << i;
+        let [waits, counts] = [!is_empty, counts].map(|is| if is { bit } else { 0 });
+        next.done |= bit & !waits;
+        next.nothing |= waits & !counts;
+        let (visit, block) = (waits & counts, child.all_ones_if_leaf());
+        next.node |= visit & !block;
+        next.block |= visit & block;
     }
 }
 
@@ -194,9 +213,9 @@ struct Next {
 
 impl Next {
     #[inline(always)]
-    fn goes_to(&mut self, i: usize, child: Child) {
-        self.node |= u32::from(!child.is_leaf()) << i;
-        self.block |= u32::from(child.is_leaf()) << i;
+    fn goes_to(&mut self, bit: u32, child: Child) {
+        self.node |= bit & !child.all_ones_if_leaf();
+        self.block |= bit & child.all_ones_if_leaf();
     }
 
     #[inline(always)]
@@ -206,9 +225,9 @@ impl Next {
 }
 
 #[inline(always)]
-fn for_each_bit(mut bits: u32, mut f: impl FnMut(usize)) {
+fn for_each_bit(mut bits: u32, mut f: impl FnMut(usize, u32)) {
     while bits != 0 {
-        f(bits.trailing_zeros() as usize % FLIGHT);
+        f(bits.trailing_zeros() as usize % FLIGHT, bits & bits.wrapping_neg());
         bits &= bits - 1;
     }
 }
@@ -229,23 +248,15 @@ impl Walk {
             octant: 0,
             t_min: 0.0,
             t_best: 0.0,
+            slack: 0.0,
             from: 0.0,
             until: 0.0,
             edges: [0.0; 3],
-            index: 0,
+            index: NO_HIT,
             base,
             top: base,
-            next: Child(0),
+            next: Child::default(),
         }
-    }
-
-    fn start(&mut self, ray: usize, beam: Beam, t_min: f32, t_max: f32) {
-        let [x, y, z] = beam.points_up().map(|up| usize::from(!up));
-        (self.near, self.far, self.octant) =
-            ([x, 2 + y, 4 + z], [x ^ 1, 2 + (y ^ 1), 4 + (z ^ 1)], x | y << 1 | z << 2);
-        (self.ray, self.beam, self.t_min, self.t_best) = (ray, beam, t_min, t_max);
-        (self.from, self.until) = (t_min - self.beam.slack(), t_max + self.beam.slack());
-        (self.index, self.top) = (crate::ray::NO_HIT, self.base);
     }
 
     /// Pushes the children of a node whose boxes the ray enters.

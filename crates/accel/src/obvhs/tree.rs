@@ -19,7 +19,7 @@ pub(super) const WIDTH: usize = F32x8::LANES;
 const PART: usize = 1 << 20;
 
 /// A subtree: an inner node, or a leaf block if the top bit is set.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Child(pub(super) u32);
 
 const LEAF: u32 = 1 << 31;
@@ -28,6 +28,12 @@ impl Child {
     #[inline(always)]
     pub(super) fn is_leaf(self) -> bool {
         self.0 & LEAF != 0
+    }
+
+    /// A mask instead of a branch.
+    #[inline(always)]
+    pub(super) fn all_ones_if_leaf(self) -> u32 {
+        (self.0 as i32 >> 31) as u32
     }
 }
 
