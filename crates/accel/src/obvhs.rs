@@ -15,6 +15,7 @@ mod few;
 mod flight;
 mod order;
 mod sah;
+mod tile;
 mod tree;
 
 use crate::Accel;
@@ -156,10 +157,16 @@ impl Quest for Any<'_> {
 }
 
 impl Tree {
-    fn closest<const FAST: bool>(&self, _kind: RayKind, rays: &[Ray8], hits: &mut [Hit8]) {
+    fn closest<const FAST: bool>(&self, kind: RayKind, rays: &[Ray8], hits: &mut [Hit8]) {
         let count = rays.len().min(hits.len());
-        hits[..count].fill(Hit8::miss());
-        self.fly::<FAST, _>(&rays[..count], &mut Nearest { tree: self, hits });
+        let (rays, hits) = (&rays[..count], &mut hits[..count]);
+        hits.fill(Hit8::miss());
+        match kind {
+            RayKind::Coherent => self.closest_in_tiles::<FAST>(rays, hits, |rays, hits| {
+                self.fly::<FAST, _>(rays, &mut Nearest { tree: self, hits });
+            }),
+            RayKind::Incoherent => self.fly::<FAST, _>(rays, &mut Nearest { tree: self, hits }),
+        }
     }
 
     fn occluded<const FAST: bool>(&self, rays: &[Ray8], filter: Option<&dyn Opacity>, blocked: &mut [Mask8]) {

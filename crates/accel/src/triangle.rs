@@ -19,7 +19,7 @@
 //! turn would give, to the last bit.
 
 use gonio_kernel::frame::tangents;
-use gonio_kernel::{F32x8, Mask8, Real, Vec3};
+use gonio_kernel::{F32x8, Mask, Mask8, Real, Vec3};
 use std::fmt;
 
 /// How strictly rays are tested against triangles. `Brute` is always robust, because it is what the others are measured against.
@@ -132,6 +132,24 @@ impl Beam {
         [self.inverse.x, self.inverse.y, self.inverse.z].map(|i| i.lt(F32x8::ZERO).to_bits())
     }
 
+    /// Where the rays start.
+    #[inline(always)]
+    pub fn origin(&self) -> Vec3<F32x8> {
+        self.origin
+    }
+
+    /// One over each component of the directions, finite.
+    #[inline(always)]
+    pub fn inverse(&self) -> Vec3<F32x8> {
+        self.inverse
+    }
+
+    /// By how much slab intervals are padded at either end, along each axis.
+    #[inline(always)]
+    pub fn pad(&self) -> Vec3<F32x8> {
+        (self.leave - self.enter) * F32x8::splat(0.5)
+    }
+
     /// By how much a hit's t may lie outside the slab interval of a box around the triangle.
     #[inline(always)]
     pub fn slack(&self) -> F32x8 {
@@ -165,6 +183,13 @@ impl Crossing {
     #[inline(always)]
     pub fn edges(&self) -> &[F32x8; 3] {
         &self.edges
+    }
+
+    /// What one lane found, in all eight.
+    #[inline(always)]
+    pub fn splat_lane(&self, lane: usize) -> Self {
+        let one = |x: F32x8| F32x8::splat(x.lane(lane));
+        Self { mask: Mask8::splat(self.mask.lane(lane)), t: one(self.t), edges: self.edges.map(one) }
     }
 
     /// Barycentric weights of the second and third vertex; the first has 1 − b1 − b2.

@@ -233,7 +233,7 @@ fn for_each_bit(mut bits: u32, mut f: impl FnMut(usize, u32)) {
 }
 
 /// Live rays of finite numbers: others meet nothing, and would not find their way among boxes.
-fn sound(ray: &Ray8) -> Mask8 {
+pub(super) fn sound(ray: &Ray8) -> Mask8 {
     let finite = |v: Vec3<F32x8>| (v.x.abs() + v.y.abs() + v.z.abs()).lt(F32x8::splat(f32::INFINITY));
     ray.mask & finite(ray.origin) & finite(ray.dir)
 }
@@ -283,12 +283,12 @@ impl Walk {
 
 /// Eight numbers below eight, of three bits each, one per lane.
 #[inline(always)]
-fn spread(packed: u32) -> U32x8 {
+pub(super) fn spread(packed: u32) -> U32x8 {
     U32x8::splat(packed).shr_each(U32x8::new([0, 3, 6, 9, 12, 15, 18, 21]))
 }
 
 /// For each set of lanes its members, the first lane first, packed for [`spread`]; then zeros.
-const TOGETHER: [u32; 256] = {
+pub(super) const TOGETHER: [u32; 256] = {
     let mut table = [0; 256];
     let mut set = 0;
     while set < 256 {
@@ -307,7 +307,17 @@ const TOGETHER: [u32; 256] = {
 
 /// The test that a traversal is compiled with.
 #[inline(always)]
-pub(super) fn test<const FAST: bool>(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: f32, t_max: f32) -> Crossing {
-    let (t_min, t_max) = (F32x8::splat(t_min), F32x8::splat(t_max));
+pub(super) fn crossing<const FAST: bool>(
+    beam: &Beam,
+    corners: &[Vec3<F32x8>; 3],
+    t_min: F32x8,
+    t_max: F32x8,
+) -> Crossing {
     if FAST { intersect_fast(beam, corners, t_min, t_max) } else { intersect(beam, corners, t_min, t_max) }
+}
+
+/// The same for one ray.
+#[inline(always)]
+pub(super) fn test<const FAST: bool>(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: f32, t_max: f32) -> Crossing {
+    crossing::<FAST>(beam, corners, F32x8::splat(t_min), F32x8::splat(t_max))
 }

@@ -1,0 +1,298 @@
+//! Rays that start together and point the same way: up to four packets visit the tree as one.
+//!
+//! A tile of up to 32 rays is tested against the boxes of a node's eight children at once, by intervals: if origins lie in a box and
+//! inverse directions, all of one sign per axis, in another, then no ray enters a child before the least, nor leaves it after the
+//! greatest of the products at their ends (compare Boulos, Wald & Shirley 2006, "Geometric and Arithmetic Culling Methods for
+//! Entire Ray Packets"). A node so costs 32 rays hardly more than one. Only at a block of triangles each packet is tested
+//! against the block's own box. Where many of its eight rays enter, they are tested against one triangle after the other;
+//! where few do, each ray against all eight triangles at once.
+//!
+//! Rays that do not share their octant go on alone ([`super::flight`]). Every test of a triangle is the same, so results are too.
+
+use super::flight::{TOGETHER, crossing, sound, spread, test};
+use super::for_each_lane;
+use super::tree::{Cell, Child, Tree};
+use crate::geometry::{Order, TriangleId};
+use crate::ray::{Hit8, Ray8};
+use crate::triangle::{Beam, Crossing, barycentric};
+use gonio_kernel::{F32x8, Mask, Mask8, Real, U32x8, Vec3};
+
+/// Most packets of a tile.
+const PACKETS: usize = 4;
+
+/// The place of no triangle: larger than any other as a signed number.
+const NOWHERE: u32 = u32::MAX >> 1;
+
+/// Eight rays of a tile and the best hits of theirs so far.
+#[derive(Clone, Copy)]
+struct Packet {
+    beam: Beam,
+    live: Mask8,
+    t_min: F32x8,
+    t_best: F32x8,
+    /// Boxes count that a ray is in between here,
+    from: F32x8,
+    /// and here; nowhere if it is not alive.
+    until: F32x8,
+    edges: [F32x8; 3],
+    /// Places of the triangles, or [`NOWHERE`].
+    index: U32x8,
+}
+
+impl Packet {
+    fn new(ray: &Ray8, tree: &Tree) -> Self {
+        let beam = Beam::new(ray.origin, ray.dir, tree.lo, tree.hi);
+        let (live, slack) = (sound(ray), beam.slack());
+        Self {
+            beam,
+            live,
+            t_min: ray.t_min,
+            t_best: ray.t_max,
+            from: ray.t_min - slack,
+            until: F32x8::select(live, ray.t_max + slack, F32x8::splat(f32::NEG_INFINITY)),
+            edges: [F32x8::ZERO; 3],
+            index: U32x8::splat(NOWHERE),
+        }
+    }
+
+    fn hit(&self, order: &Order) -> Hit8 {
+        let found = self.index.lt(U32x8::splat(NOWHERE));
+        let mut hit = Hit8 {
+            t: F32x8::select(found, self.t_best, F32x8::splat(f32::INFINITY)),
+            bary: barycentric(&self.edges).map(|b| b.or_zero(found)),
+            ..Hit8::miss()
+        };
+        for_each_lane(found, |lane| {
+            let TriangleId { prim, mesh, instance } = order.id(self.index.lane(lane));
+            hit.prim.set_lane(lane, prim);
+            hit.mesh.set_lane(lane, mesh);
+            hit.instance.set_lane(lane, instance);
+        });
+        hit
+    }
+
+    /// Takes those hits that are better.
+    #[inline(always)]
+    fn take(&mut self, crossing: &Crossing, live: Mask8, index: u32) -> bool {
+        let index = U32x8::splat(index);
+        // Not <: of two at one distance that with the smaller index counts.
+        let nearer = crossing.t.lt(self.t_best) | (crossing.t.le(self.t_best) & index.lt(self.index));
+        let better = crossing.mask & live & nearer;
+        if better.any() {
+            self.t_best = F32x8::select(better, crossing.t, self.t_best);
+            self.until = F32x8::select(better, crossing.t + self.beam.slack(), self.until);
+            for (best, edge) in self.edges.iter_mut().zip(crossing.edges()) {
+                *best = F32x8::select(better, *edge, *best);
+            }
+            self.index = U32x8::select(better, index, self.index);
+        }
+        better.any()
+    }
+}
+
+/// The intervals of a tile: what the products with a plane's coordinate are taken from, for both ends.
+struct Interval {
+    /// Rows of a node.
+    near: [usize; 3],
+    far: [usize; 3],
+    octant: usize,
+    /// Both ends of the inverse directions, along each axis.
+    inverse: [[F32x8; 2]; 3],
+    /// What is added for near planes at either end,
+    enter: [[F32x8; 2]; 3],
+    /// and for far planes.
+    leave: [[F32x8; 2]; 3],
+    from: F32x8,
+}
+
+/// The least, or the greatest, number of all live rays.
+#[inline(always)]
+fn extreme(packets: &[Packet], pick: impl Fn(&Packet) -> F32x8, start: f32, f: fn(F32x8, F32x8) -> F32x8) -> f32 {
+    let start = F32x8::splat(start);
+    let all = packets.iter().fold(start, |all, p| f(all, F32x8::select(p.live, pick(p), start)));
+    // Eight lanes become one in three halvings.
+    [[4, 5, 6, 7, 0, 1, 2, 3], [2, 3, 0, 1, 6, 7, 4, 5], [1, 0, 3, 2, 5, 4, 7, 6]]
+        .into_iter()
+        .fold(all, |all, from| f(all, all.to_bits().permute(U32x8::new(from)).as_real()))
+        .lane(0)
+}
+
+/// The octant that all live rays share.
+fn octant_of(packets: &[Packet]) -> Option<usize> {
+    let (mut some, mut every) = ([0; 3], [true; 3]);
+    for packet in packets {
+        let live = packet.live.to_bits();
+        for (axis, down) in packet.beam.points_down().into_iter().enumerate() {
+            some[axis] |= down & live;
+            every[axis] &= down & live == live;
+        }
+    }
+    let shared = |axis: usize| some[axis] == 0 || every[axis];
+    let bit = |axis: usize| usize::from(some[axis] != 0) << axis;
+    (shared(0) && shared(1) && shared(2)).then_some(bit(0) | bit(1) | bit(2))
+}
+
+impl Interval {
+    /// The intervals of packets whose rays share an octant.
+    fn of(packets: &[Packet]) -> Option<Self> {
+        let octant = octant_of(packets)?;
+        let least = |pick: fn(&Packet) -> F32x8| extreme(packets, pick, f32::INFINITY, F32x8::min);
+        let most = |pick: fn(&Packet) -> F32x8| extreme(packets, pick, f32::NEG_INFINITY, F32x8::max);
+        let down = [octant & 1, octant >> 1 & 1, octant >> 2];
+        let origins = [
+            [least(|p| p.beam.origin().x), most(|p| p.beam.origin().x)],
+            [least(|p| p.beam.origin().y), most(|p| p.beam.origin().y)],
+            [least(|p| p.beam.origin().z), most(|p| p.beam.origin().z)],
+        ];
+        let inverses = [
+            [least(|p| p.beam.inverse().x), most(|p| p.beam.inverse().x)],
+            [least(|p| p.beam.inverse().y), most(|p| p.beam.inverse().y)],
+            [least(|p| p.beam.inverse().z), most(|p| p.beam.inverse().z)],
+        ];
+        let pads = [most(|p| p.beam.pad().x), most(|p| p.beam.pad().y), most(|p| p.beam.pad().z)];
+        // The origin that is farthest along for near planes, the other one for far planes; twice the padding of a ray, because
+        // the offsets here are rounded like those of a ray, but are not the same.
+        let offsets = |axis: usize, origin: f32, pad: f32| {
+            inverses[axis].map(|inverse| F32x8::splat(2.0 * pad * pads[axis] - origin * inverse))
+        };
+        let enter = [0, 1, 2].map(|axis| offsets(axis, origins[axis][1 - down[axis]], -1.0));
+        let leave = [0, 1, 2].map(|axis| offsets(axis, origins[axis][down[axis]], 1.0));
+        let [x, y, z] = down;
+        Some(Self {
+            near: [x, 2 + y, 4 + z],
+            far: [x ^ 1, 2 + (y ^ 1), 4 + (z ^ 1)],
+            octant,
+            inverse: inverses.map(|ends| ends.map(F32x8::splat)),
+            enter,
+            leave,
+            from: F32x8::splat(least(|p| p.from)),
+        })
+    }
+
+    /// Where the first ray may enter each child's box, and where the last may leave it.
+    #[inline(always)]
+    fn slab(&self, node: &Cell) -> [F32x8; 2] {
+        let at = |rows: [usize; 3], offsets: &[[F32x8; 2]; 3], pick: fn(F32x8, F32x8) -> F32x8| {
+            [0, 1, 2].map(|axis| {
+                let (plane, [a, b]) = (node.plane(rows[axis]), self.inverse[axis]);
+                pick(plane.mul_add(a, offsets[axis][0]), plane.mul_add(b, offsets[axis][1]))
+            })
+        };
+        let enter = at(self.near, &self.enter, F32x8::min);
+        let leave = at(self.far, &self.leave, F32x8::max);
+        [enter[0].max(enter[1]).max(enter[2]), leave[0].min(leave[1]).min(leave[2])]
+    }
+}
+
+/// Subtrees still to be visited by a tile: children as the places of their nodes · 8 + slot, and where the tile may enter them.
+struct Stack {
+    children: Vec<u32>,
+    nears: Vec<f32>,
+}
+
+impl Tree {
+    /// Finds the nearest hits of rays, in tiles as far as they have enough in common; hands on those that have not.
+    pub(super) fn closest_in_tiles<const FAST: bool>(
+        &self,
+        rays: &[Ray8],
+        hits: &mut [Hit8],
+        mut alone: impl FnMut(&[Ray8], &mut [Hit8]),
+    ) {
+        let Some(first) = rays.first().filter(|_| !self.root.is_leaf()) else { return alone(rays, hits) };
+        let size = self.stack_size();
+        let mut stack = Stack { children: vec![0; size], nears: vec![0.0; size] };
+        let mut packets = [Packet::new(first, self); PACKETS];
+        for (rays, hits) in rays.chunks(PACKETS).zip(hits.chunks_mut(PACKETS)) {
+            let packets = &mut packets[..rays.len()];
+            for (packet, ray) in packets.iter_mut().zip(rays) {
+                *packet = Packet::new(ray, self);
+            }
+            let Some(interval) = Interval::of(packets) else {
+                alone(rays, hits);
+                continue;
+            };
+            self.visit_tile::<FAST>(packets, &interval, &mut stack);
+            for (packet, hit) in packets.iter().zip(hits) {
+                *hit = packet.hit(&self.order);
+            }
+        }
+    }
+
+    fn visit_tile<const FAST: bool>(&self, packets: &mut [Packet], interval: &Interval, stack: &mut Stack) {
+        let last = |packets: &[Packet]| extreme(packets, |p| p.until, f32::NEG_INFINITY, F32x8::max);
+        let mut until = last(packets);
+        let mut top = self.enter_tile(interval, self.root, until, stack, 0);
+        while top > 0 {
+            top -= 1;
+            if stack.nears[top] > until {
+                continue;
+            }
+            let key = stack.children[top];
+            let (parent, slot) = (self.cell(Child(key >> 3)), key as usize & 7);
+            let child = Child(parent.children().lane(slot));
+            if !child.is_leaf() {
+                top = self.enter_tile(interval, child, until, stack, top);
+                continue;
+            }
+            let block = self.cell(child);
+            let plane = |row: usize| F32x8::splat(parent.plane(row).lane(slot));
+            let [near, far] = [interval.near, interval.far].map(|[x, y, z]| Vec3::new(plane(x), plane(y), plane(z)));
+            let mut met = false;
+            for packet in &mut *packets {
+                let [enter, leave] = packet.beam.slab(near, far);
+                let entered = enter.max(packet.from).le(leave.min(packet.until));
+                if entered.any() {
+                    met |= packet.meet::<FAST>(entered, block);
+                }
+            }
+            if met {
+                until = last(packets);
+            }
+        }
+    }
+
+    /// Pushes the children of a node that some ray may enter; returns the new top of the stack.
+    #[inline(always)]
+    fn enter_tile(&self, interval: &Interval, node: Child, until: f32, stack: &mut Stack, top: usize) -> usize {
+        let cell = self.cell(node);
+        let [enter, leave] = interval.slab(cell);
+        let entered = enter.max(interval.from).le(leave.min(F32x8::splat(until)));
+        let order = spread(cell.order(interval.octant));
+        let bits = entered.permute(order).to_bits();
+        let order = order.permute(spread(TOGETHER[bits as usize & 0xff]));
+        // The order has slots in its lowest three bits, and other slots above.
+        let keys = (order & U32x8::splat(7)) | U32x8::splat(node.0 << 3);
+        stack.children[top..top + 8].copy_from_slice(&keys.to_array());
+        stack.nears[top..top + 8].copy_from_slice(&enter.to_bits().permute(order).as_real().to_array());
+        top + bits.count_ones() as usize
+    }
+}
+
+impl Packet {
+    /// Tests the rays that enter a block's box against its triangles; whether some came to a better hit.
+    #[inline(always)]
+    fn meet<const FAST: bool>(&mut self, entered: Mask8, block: &Cell) -> bool {
+        let (corners, count) = (block.corners(), block.triangle_count());
+        let mut met = false;
+        if 2 * entered.to_bits().count_ones() as usize <= count {
+            for_each_lane(entered, |ray| {
+                let beam = self.beam.splat_lane(ray);
+                let crossing = test::<FAST>(&beam, &corners, self.t_min.lane(ray), self.t_best.lane(ray));
+                for_each_lane(crossing.mask, |lane| {
+                    let crossing = crossing.splat_lane(lane);
+                    met |= self.take(&crossing, Mask8::from_bits(1 << ray), block.index(lane));
+                });
+            });
+        } else {
+            for lane in 0..count {
+                let one = |x: F32x8| F32x8::splat(x.lane(lane));
+                let corners = corners.map(|c| Vec3::new(one(c.x), one(c.y), one(c.z)));
+                let crossing = crossing::<FAST>(&self.beam, &corners, self.t_min, self.t_best);
+                if crossing.mask.any() {
+                    met |= self.take(&crossing, entered, block.index(lane));
+                }
+            }
+        }
+        met
+    }
+}
