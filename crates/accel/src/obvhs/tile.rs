@@ -264,7 +264,11 @@ impl Tree {
         let keys = (order & U32x8::splat(7)) | U32x8::splat(node.0 << 3);
         stack.children[top..top + 8].copy_from_slice(&keys.to_array());
         stack.nears[top..top + 8].copy_from_slice(&enter.to_bits().permute(order).as_real().to_array());
-        top + bits.count_ones() as usize
+        let end = top + bits.count_ones() as usize;
+        for key in &stack.children[top..end] {
+            self.prefetch(Child(cell.children().lane(*key as usize)));
+        }
+        end
     }
 }
 
