@@ -169,18 +169,29 @@ impl Interval {
         })
     }
 
-    /// Where the first ray may enter each child's box, and where the last may leave it.
+    /// Where the first ray may enter each of eight boxes, and where the last may leave it, given their near and far planes.
     #[inline(always)]
-    fn slab(&self, node: &Cell) -> [F32x8; 2] {
-        let at = |rows: [usize; 3], offsets: &[[F32x8; 2]; 3], pick: fn(F32x8, F32x8) -> F32x8| {
+    fn slab(&self, near: [F32x8; 3], far: [F32x8; 3]) -> [F32x8; 2] {
+        let at = |planes: [F32x8; 3], offsets: &[[F32x8; 2]; 3], pick: fn(F32x8, F32x8) -> F32x8| {
             [0, 1, 2].map(|axis| {
-                let (plane, [a, b]) = (node.plane(rows[axis]), self.inverse[axis]);
+                let (plane, [a, b]) = (planes[axis], self.inverse[axis]);
                 pick(plane.mul_add(a, offsets[axis][0]), plane.mul_add(b, offsets[axis][1]))
             })
         };
-        let enter = at(self.near, &self.enter, F32x8::min);
-        let leave = at(self.far, &self.leave, F32x8::max);
+        let enter = at(near, &self.enter, F32x8::min);
+        let leave = at(far, &self.leave, F32x8::max);
         [enter[0].max(enter[1]).max(enter[2]), leave[0].min(leave[1]).min(leave[2])]
+    }
+
+    /// The triangles of a block, as a set, whose own boxes some ray may enter.
+    #[inline(always)]
+    fn candidates(&self, corners: &[Vec3<F32x8>; 3], until: f32) -> u32 {
+        let [a, b, c] = *corners;
+        let ends = |a: F32x8, b: F32x8, c: F32x8| [a.min(b).min(c), a.max(b).max(c)];
+        let ends = [ends(a.x, b.x, c.x), ends(a.y, b.y, c.y), ends(a.z, b.z, c.z)];
+        let side = |far: usize| [0, 1, 2].map(|axis| ends[axis][(self.octant >> axis & 1) ^ far]);
+        let [enter, leave] = self.slab(side(0), side(1));
+        enter.max(self.from).le(leave.min(F32x8::splat(until))).to_bits()
     }
 }
 
@@ -207,13 +218,23 @@ impl Tree {
             for (packet, ray) in packets.iter_mut().zip(rays) {
                 *packet = Packet::new(ray, self);
             }
-            let Some(interval) = Interval::of(packets) else {
-                alone(rays, hits);
+            // As one tile; if they have not enough in common, each packet for itself; if even that has not, each ray.
+            if let Some(interval) = Interval::of(packets) {
+                self.visit_tile::<FAST>(packets, &interval, &mut stack);
+                for (packet, hit) in packets.iter().zip(hits) {
+                    *hit = packet.hit(&self.order);
+                }
                 continue;
-            };
-            self.visit_tile::<FAST>(packets, &interval, &mut stack);
-            for (packet, hit) in packets.iter().zip(hits) {
-                *hit = packet.hit(&self.order);
+            }
+            for ((packet, ray), hit) in packets.iter_mut().zip(rays).zip(hits) {
+                let packet = std::slice::from_mut(packet);
+                match Interval::of(packet) {
+                    Some(interval) => {
+                        self.visit_tile::<FAST>(packet, &interval, &mut stack);
+                        *hit = packet[0].hit(&self.order);
+                    }
+                    None => alone(std::slice::from_ref(ray), std::slice::from_mut(hit)),
+                }
             }
         }
     }
@@ -235,6 +256,11 @@ impl Tree {
                 continue;
             }
             let block = self.cell(child);
+            let corners = block.corners();
+            let candidates = interval.candidates(&corners, until) & block.used();
+            if candidates == 0 {
+                continue;
+            }
             let plane = |row: usize| F32x8::splat(parent.plane(row).lane(slot));
             let [near, far] = [interval.near, interval.far].map(|[x, y, z]| Vec3::new(plane(x), plane(y), plane(z)));
             let mut met = false;
@@ -242,7 +268,7 @@ impl Tree {
                 let [enter, leave] = packet.beam.slab(near, far);
                 let entered = enter.max(packet.from).le(leave.min(packet.until));
                 if entered.any() {
-                    met |= packet.meet::<FAST>(entered, block);
+                    met |= packet.meet::<FAST>(entered, block, &corners, candidates);
                 }
             }
             if met {
@@ -255,7 +281,8 @@ impl Tree {
     #[inline(always)]
     fn enter_tile(&self, interval: &Interval, node: Child, until: f32, stack: &mut Stack, top: usize) -> usize {
         let cell = self.cell(node);
-        let [enter, leave] = interval.slab(cell);
+        let [enter, leave] =
+            interval.slab(interval.near.map(|row| cell.plane(row)), interval.far.map(|row| cell.plane(row)));
         let entered = enter.max(interval.from).le(leave.min(F32x8::splat(until)));
         let order = spread(cell.order(interval.octant));
         let bits = entered.permute(order).to_bits();
@@ -273,29 +300,35 @@ impl Tree {
 }
 
 impl Packet {
-    /// Tests the rays that enter a block's box against its triangles; whether some came to a better hit.
+    /// Tests the rays that enter a block's box against those of its triangles that are candidates; whether some came to a
+    /// better hit.
     #[inline(always)]
-    fn meet<const FAST: bool>(&mut self, entered: Mask8, block: &Cell) -> bool {
-        let (corners, count) = (block.corners(), block.triangle_count());
+    fn meet<const FAST: bool>(
+        &mut self,
+        entered: Mask8,
+        block: &Cell,
+        corners: &[Vec3<F32x8>; 3],
+        candidates: u32,
+    ) -> bool {
         let mut met = false;
-        if 2 * entered.to_bits().count_ones() as usize <= count {
+        if 2 * entered.to_bits().count_ones() <= candidates.count_ones() {
             for_each_lane(entered, |ray| {
                 let beam = self.beam.splat_lane(ray);
-                let crossing = test::<FAST>(&beam, &corners, self.t_min.lane(ray), self.t_best.lane(ray));
+                let crossing = test::<FAST>(&beam, corners, self.t_min.lane(ray), self.t_best.lane(ray));
                 for_each_lane(crossing.mask, |lane| {
                     let crossing = crossing.splat_lane(lane);
                     met |= self.take(&crossing, Mask8::from_bits(1 << ray), block.index(lane));
                 });
             });
         } else {
-            for lane in 0..count {
+            for_each_lane(Mask8::from_bits(candidates), |lane| {
                 let one = |x: F32x8| F32x8::splat(x.lane(lane));
                 let corners = corners.map(|c| Vec3::new(one(c.x), one(c.y), one(c.z)));
                 let crossing = crossing::<FAST>(&self.beam, &corners, self.t_min, self.t_best);
                 if crossing.mask.any() {
                     met |= self.take(&crossing, entered, block.index(lane));
                 }
-            }
+            });
         }
         met
     }

@@ -72,12 +72,10 @@ impl Cell {
         [Vec3::new(r[0], r[1], r[2]), Vec3::new(r[3], r[4], r[5]), Vec3::new(r[6], r[7], r[8])]
     }
 
-    /// How many triangles the block has.
+    /// The lanes of a block that are used.
     #[inline(always)]
-    pub(super) fn triangle_count(&self) -> usize {
-        let places = self.0[9].to_bits();
-        // The first is followed by others and then by itself.
-        1 + (!places.same(U32x8::splat(self.index(0)))).to_bits().count_ones() as usize
+    pub(super) fn used(&self) -> u32 {
+        (!self.0[9].to_bits().same(U32x8::splat(self.index(0)))).to_bits() | 1
     }
 
     /// The place of a triangle of the block.
