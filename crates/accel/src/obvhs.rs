@@ -13,7 +13,9 @@ mod boxes;
 mod collapse;
 mod few;
 mod flight;
+mod occluders;
 mod order;
+mod pages;
 mod sah;
 mod tile;
 mod tree;
@@ -22,10 +24,11 @@ use crate::Accel;
 use crate::brute::scalar_hit;
 use crate::geometry::{Geometry, TriangleId};
 use crate::ray::{Hit, Hit8, NO_HIT, Opacity, Ray8, RayKind};
-use crate::triangle::{Crossing, Intersect, barycentric};
+use crate::triangle::{Beam, Crossing, Intersect, barycentric};
 use few::Few;
 use flight::{Quest, Walk};
 use gonio_kernel::{F32x8, Mask8};
+use occluders::Occluders;
 use tree::{Cell, Tree};
 
 /// A tree of eight-wide nodes over the triangles of a geometry, or a list of a few.
@@ -104,7 +107,12 @@ impl Quest for Nearest<'_> {
     const ANY: bool = false;
 
     #[inline(always)]
-    fn meet(&mut self, walk: &mut Walk, crossing: &Crossing, block: &Cell) -> bool {
+    fn begin<const FAST: bool>(&mut self, _: usize, _: &Ray8, _: &Beam, live: Mask8) -> Mask8 {
+        live
+    }
+
+    #[inline(always)]
+    fn meet(&mut self, walk: &mut Walk, crossing: &Crossing, block: Cell<'_>) -> bool {
         for_each_lane(crossing.mask, |lane| {
             let (t, index) = (crossing.t.lane(lane), block.index(lane));
             if t < walk.t_best() || (t == walk.t_best() && index < walk.index) {
@@ -130,13 +138,21 @@ struct Any<'a> {
     tree: &'a Tree,
     filter: Option<&'a dyn Opacity>,
     blocked: &'a mut [Mask8],
+    occluders: Occluders,
 }
 
 impl Quest for Any<'_> {
     const ANY: bool = true;
 
     #[inline(always)]
-    fn meet(&mut self, walk: &mut Walk, crossing: &Crossing, block: &Cell) -> bool {
+    fn begin<const FAST: bool>(&mut self, packet: usize, ray: &Ray8, beam: &Beam, live: Mask8) -> Mask8 {
+        let shut = self.occluders.shut::<FAST>(ray, beam, live);
+        self.blocked[packet] = shut;
+        live & !shut
+    }
+
+    #[inline(always)]
+    fn meet(&mut self, walk: &mut Walk, crossing: &Crossing, block: Cell<'_>) -> bool {
         let blocks = |lane: usize| match self.filter {
             None => true,
             Some(f) => f.blocks(walk.ray, &scalar_hit(crossing, lane, self.tree.order.id(block.index(lane)))),
@@ -146,6 +162,9 @@ impl Quest for Any<'_> {
             if blocks(bits.trailing_zeros() as usize) {
                 let blocked = &mut self.blocked[walk.ray / F32x8::LANES];
                 *blocked = *blocked | Mask8::from_bits(1 << (walk.ray % F32x8::LANES));
+                if self.filter.is_none() {
+                    self.occluders.add(block, bits.trailing_zeros() as usize);
+                }
                 return true;
             }
             bits &= bits - 1;
@@ -162,16 +181,17 @@ impl Tree {
         let (rays, hits) = (&rays[..count], &mut hits[..count]);
         hits.fill(Hit8::miss());
         match kind {
-            RayKind::Coherent => self.closest_in_tiles::<FAST>(rays, hits, |rays, hits| {
-                self.fly::<FAST, _>(rays, &mut Nearest { tree: self, hits });
+            RayKind::Coherent => self.view().closest_in_tiles::<FAST>(rays, hits, |rays, hits| {
+                self.view().fly::<FAST, _>(rays, &mut Nearest { tree: self, hits });
             }),
-            RayKind::Incoherent => self.fly::<FAST, _>(rays, &mut Nearest { tree: self, hits }),
+            RayKind::Incoherent => self.view().fly::<FAST, _>(rays, &mut Nearest { tree: self, hits }),
         }
     }
 
     fn occluded<const FAST: bool>(&self, rays: &[Ray8], filter: Option<&dyn Opacity>, blocked: &mut [Mask8]) {
         let count = rays.len().min(blocked.len());
         blocked[..count].fill(Mask8::from_bits(0));
-        self.fly::<FAST, _>(&rays[..count], &mut Any { tree: self, filter, blocked });
+        self.view()
+            .fly::<FAST, _>(&rays[..count], &mut Any { tree: self, filter, blocked, occluders: Occluders::default() });
     }
 }

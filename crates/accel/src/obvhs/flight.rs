@@ -11,10 +11,10 @@
 //! Ylitie, Karras & Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs"). For rays that look
 //! for any hit it is the order of area: the largest box first, where anything is most likely to be met.
 
-use super::tree::{Cell, Child, Tree};
+use super::tree::{Cell, Child, View};
 use crate::ray::{NO_HIT, Ray8};
 use crate::triangle::{Beam, Crossing, intersect, intersect_fast};
-use gonio_kernel::{F32x8, Mask8, Real, U32x8, Vec3};
+use gonio_kernel::{F32x8, Mask, Mask8, Real, U32x8, Vec3};
 
 /// How many rays are on their way at once.
 const FLIGHT: usize = 16;
@@ -23,8 +23,10 @@ const FLIGHT: usize = 16;
 pub(super) trait Quest {
     /// Whether any hit will do.
     const ANY: bool;
+    /// Looks at eight rays before they go; returns those that need to.
+    fn begin<const FAST: bool>(&mut self, packet: usize, ray: &Ray8, beam: &Beam, live: Mask8) -> Mask8;
     /// Looks at the triangles of a leaf that the ray meets; true if the ray need not go on.
-    fn meet(&mut self, walk: &mut Walk, crossing: &Crossing, block: &Cell) -> bool;
+    fn meet(&mut self, walk: &mut Walk, crossing: &Crossing, block: Cell<'_>) -> bool;
     /// A ray is done: `meet` returned true, or there was no more to visit.
     fn done(&mut self, walk: &Walk);
 }
@@ -102,18 +104,18 @@ struct Queue<'a> {
     down: [u32; 3],
 }
 
-impl Tree {
+impl View<'_> {
     /// Sends all live rays through the tree.
     pub(super) fn fly<const FAST: bool, Q: Quest>(&self, rays: &[Ray8], quest: &mut Q) {
-        let size = self.stack_size();
+        let size = self.tree.stack_size();
         let mut stacks = Stacks { children: vec![0; FLIGHT * size], nears: vec![0.0; FLIGHT * size] };
         let Some(first) = rays.first() else { return };
-        let beam = Beam::new(first.origin, first.dir, self.lo, self.hi);
+        let beam = Beam::new(first.origin, first.dir, self.tree.lo, self.tree.hi);
         let mut queue = Queue { rays, begun: 0, left: 0, beam, down: [0; 3] };
         let mut walks: [Walk; FLIGHT] = std::array::from_fn(|i| Walk::nowhere(beam, i * size));
         let mut next = Next::default();
         for (i, walk) in walks.iter_mut().enumerate() {
-            if self.take(&mut queue, walk) {
+            if self.take::<FAST, Q>(&mut queue, walk, quest) {
                 next.goes_to(1 << i, walk.next);
             }
         }
@@ -138,7 +140,7 @@ impl Tree {
             for_each_bit(std::mem::take(&mut next.done), |i, bit| {
                 let walk = &mut walks[i];
                 quest.done(walk);
-                if self.take(&mut queue, walk) {
+                if self.take::<FAST, Q>(&mut queue, walk, quest) {
                     next.goes_to(bit, walk.next);
                 }
             });
@@ -147,8 +149,8 @@ impl Tree {
 
     /// Starts the next ray of the queue; false if there is none.
     #[inline(always)]
-    fn take(&self, queue: &mut Queue<'_>, walk: &mut Walk) -> bool {
-        if queue.left == 0 && !self.begin(queue) {
+    fn take<const FAST: bool, Q: Quest>(&self, queue: &mut Queue<'_>, walk: &mut Walk, quest: &mut Q) -> bool {
+        if queue.left == 0 && !self.begin::<FAST, Q>(queue, quest) {
             return false;
         }
         let lane = queue.left.trailing_zeros() as usize;
@@ -162,20 +164,23 @@ impl Tree {
         (walk.t_min, walk.t_best) = (queue.rays[packet].t_min.lane(lane), queue.rays[packet].t_max.lane(lane));
         walk.slack = queue.beam.slack().lane(lane);
         (walk.from, walk.until) = (walk.t_min - walk.slack, walk.t_best + walk.slack);
-        (walk.index, walk.top, walk.next) = (NO_HIT, walk.base, self.root);
+        (walk.index, walk.top, walk.next) = (NO_HIT, walk.base, self.tree.root);
         true
     }
 
     /// Begins the next packet that has live rays; false if there is none.
     #[inline(never)]
-    fn begin(&self, queue: &mut Queue<'_>) -> bool {
+    fn begin<const FAST: bool, Q: Quest>(&self, queue: &mut Queue<'_>, quest: &mut Q) -> bool {
         loop {
             let Some(ray) = queue.rays.get(queue.begun) else { return false };
-            queue.begun += 1;
-            queue.left = sound(ray).to_bits();
-            if queue.left != 0 {
-                queue.beam = Beam::new(ray.origin, ray.dir, self.lo, self.hi);
+            let live = sound(ray);
+            if live.any() {
+                queue.beam = Beam::new(ray.origin, ray.dir, self.tree.lo, self.tree.hi);
                 queue.down = queue.beam.points_down();
+                queue.left = quest.begin::<FAST>(queue.begun, ray, &queue.beam, live).to_bits();
+            }
+            queue.begun += 1;
+            if queue.left != 0 {
                 return true;
             }
         }
@@ -261,7 +266,7 @@ impl Walk {
 
     /// Pushes the children of a node whose boxes the ray enters.
     #[inline(always)]
-    fn visit<Q: Quest>(&mut self, node: &Cell, stacks: &mut Stacks) {
+    fn visit<Q: Quest>(&mut self, node: Cell<'_>, stacks: &mut Stacks) {
         let [near, far] = [self.near, self.far].map(|[x, y, z]| Vec3::new(node.plane(x), node.plane(y), node.plane(z)));
         let [enter, leave] = self.beam.slab(near, far);
         let entered = enter.max(F32x8::splat(self.from)).le(leave.min(F32x8::splat(self.until)));

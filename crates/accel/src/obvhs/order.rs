@@ -36,7 +36,7 @@ pub(super) fn settle(tree: &mut Tree, nodes: &[Child], odds: &mut Vec<Odds>) {
     }
 }
 
-fn of_block(block: &Cell, bounds: Box3) -> Odds {
+fn of_block(block: Cell<'_>, bounds: Box3) -> Odds {
     let [a, b, c] = block.corners();
     let normal = (b - a).cross(c - a);
     let areas = (normal.dot(normal).sqrt() * F32x8::splat(0.5)).to_array();

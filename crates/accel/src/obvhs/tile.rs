@@ -11,7 +11,7 @@
 
 use super::flight::{TOGETHER, crossing, sound, spread, test};
 use super::for_each_lane;
-use super::tree::{Cell, Child, Tree};
+use super::tree::{Cell, Child, Tree, View};
 use crate::geometry::{Order, TriangleId};
 use crate::ray::{Hit8, Ray8};
 use crate::triangle::{Beam, Crossing, barycentric};
@@ -201,7 +201,7 @@ struct Stack {
     nears: Vec<f32>,
 }
 
-impl Tree {
+impl View<'_> {
     /// Finds the nearest hits of rays, in tiles as far as they have enough in common; hands on those that have not.
     pub(super) fn closest_in_tiles<const FAST: bool>(
         &self,
@@ -209,20 +209,20 @@ impl Tree {
         hits: &mut [Hit8],
         mut alone: impl FnMut(&[Ray8], &mut [Hit8]),
     ) {
-        let Some(first) = rays.first().filter(|_| !self.root.is_leaf()) else { return alone(rays, hits) };
-        let size = self.stack_size();
+        let Some(first) = rays.first().filter(|_| !self.tree.root.is_leaf()) else { return alone(rays, hits) };
+        let size = self.tree.stack_size();
         let mut stack = Stack { children: vec![0; size], nears: vec![0.0; size] };
-        let mut packets = [Packet::new(first, self); PACKETS];
+        let mut packets = [Packet::new(first, self.tree); PACKETS];
         for (rays, hits) in rays.chunks(PACKETS).zip(hits.chunks_mut(PACKETS)) {
             let packets = &mut packets[..rays.len()];
             for (packet, ray) in packets.iter_mut().zip(rays) {
-                *packet = Packet::new(ray, self);
+                *packet = Packet::new(ray, self.tree);
             }
             // As one tile; if they have not enough in common, each packet for itself; if even that has not, each ray.
             if let Some(interval) = Interval::of(packets) {
                 self.visit_tile::<FAST>(packets, &interval, &mut stack);
                 for (packet, hit) in packets.iter().zip(hits) {
-                    *hit = packet.hit(&self.order);
+                    *hit = packet.hit(&self.tree.order);
                 }
                 continue;
             }
@@ -231,7 +231,7 @@ impl Tree {
                 match Interval::of(packet) {
                     Some(interval) => {
                         self.visit_tile::<FAST>(packet, &interval, &mut stack);
-                        *hit = packet[0].hit(&self.order);
+                        *hit = packet[0].hit(&self.tree.order);
                     }
                     None => alone(std::slice::from_ref(ray), std::slice::from_mut(hit)),
                 }
@@ -242,7 +242,7 @@ impl Tree {
     fn visit_tile<const FAST: bool>(&self, packets: &mut [Packet], interval: &Interval, stack: &mut Stack) {
         let last = |packets: &[Packet]| extreme(packets, |p| p.until, f32::NEG_INFINITY, F32x8::max);
         let mut until = last(packets);
-        let mut top = self.enter_tile(interval, self.root, until, stack, 0);
+        let mut top = self.enter_tile(interval, self.tree.root, until, stack, 0);
         while top > 0 {
             top -= 1;
             if stack.nears[top] > until {
@@ -306,7 +306,7 @@ impl Packet {
     fn meet<const FAST: bool>(
         &mut self,
         entered: Mask8,
-        block: &Cell,
+        block: Cell<'_>,
         corners: &[Vec3<F32x8>; 3],
         candidates: u32,
     ) -> bool {

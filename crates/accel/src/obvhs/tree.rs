@@ -7,6 +7,7 @@
 
 use super::boxes::{Box3, Ref};
 use super::collapse::Collapse;
+use super::pages::{Pages, Rows};
 use super::{order, sah};
 use crate::geometry::{Geometry, Order};
 use glam::Vec4;
@@ -44,51 +45,50 @@ impl Child {
 /// bits each. Bit a of an octant is set if directions point down axis a. An unused slot has an inverted infinite box, which no ray
 /// enters. A **block** has up to eight triangles: rows 0 to 8 are x, y, z of their three corners, row 9 their places in the
 /// order of (instance, prim). Unused lanes repeat the first, which changes no result.
-#[derive(Clone, Debug)]
-#[repr(C, align(64))]
-pub(super) struct Cell([F32x8; 10]);
+#[derive(Clone, Copy)]
+pub(super) struct Cell<'a>(&'a Rows);
 
-impl Cell {
+impl Cell<'_> {
     /// A plane of the boxes; rows beyond the planes for numbers from 6 on, which are taken modulo 8.
     #[inline(always)]
-    pub(super) fn plane(&self, row: usize) -> F32x8 {
-        self.0[row & 7]
+    pub(super) fn plane(self, row: usize) -> F32x8 {
+        F32x8(self.0[row & 7])
     }
 
     #[inline(always)]
-    pub(super) fn children(&self) -> U32x8 {
-        self.0[6].to_bits()
+    pub(super) fn children(self) -> U32x8 {
+        F32x8(self.0[6]).to_bits()
     }
 
     /// The order of an octant, packed.
     #[inline(always)]
-    pub(super) fn order(&self, octant: usize) -> u32 {
-        self.0[7].lane(octant).to_bits()
+    pub(super) fn order(self, octant: usize) -> u32 {
+        F32x8(self.0[7]).lane(octant).to_bits()
     }
 
     #[inline(always)]
-    pub(super) fn corners(&self) -> [Vec3<F32x8>; 3] {
-        let r = &self.0;
+    pub(super) fn corners(self) -> [Vec3<F32x8>; 3] {
+        let r = self.0.map(F32x8);
         [Vec3::new(r[0], r[1], r[2]), Vec3::new(r[3], r[4], r[5]), Vec3::new(r[6], r[7], r[8])]
     }
 
     /// The lanes of a block that are used.
     #[inline(always)]
-    pub(super) fn used(&self) -> u32 {
-        (!self.0[9].to_bits().same(U32x8::splat(self.index(0)))).to_bits() | 1
+    pub(super) fn used(self) -> u32 {
+        (!F32x8(self.0[9]).to_bits().same(U32x8::splat(self.index(0)))).to_bits() | 1
     }
 
     /// The place of a triangle of the block.
     #[inline(always)]
-    pub(super) fn index(&self, lane: usize) -> u32 {
-        self.0[9].lane(lane).to_bits()
+    pub(super) fn index(self, lane: usize) -> u32 {
+        F32x8(self.0[9]).lane(lane).to_bits()
     }
 }
 
 /// The whole tree.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
-    cells: Vec<Cell>,
+    cells: Pages,
     pub(super) root: Child,
     pub(super) order: Order,
     pub(super) lo: Vec3<f32>,
@@ -106,7 +106,7 @@ impl Tree {
     fn in_parts(geometry: &Geometry, most: usize, progress: &mut dyn FnMut(usize)) -> Self {
         let none = Vec3::splat(0.0);
         let order = geometry.order().clone();
-        let mut tree = Self { cells: Vec::new(), root: Child(0), order, lo: none, hi: none, depth: 1 };
+        let mut tree = Self { cells: Pages::default(), root: Child(0), order, lo: none, hi: none, depth: 1 };
         let mut refs: Vec<Ref> = (0..geometry.triangle_count() as u32).map(|i| Ref::of_triangle(geometry, i)).collect();
         let mut roots = Vec::new();
         let mut odds = Vec::new();
@@ -131,7 +131,7 @@ impl Tree {
             [tree.lo, tree.hi] = [bounds.lo, bounds.hi].map(|v| Vec3::new(v.x, v.y, v.z));
         }
         match roots[..] {
-            [] => tree.cells.push(Cell::node(&[])),
+            [] => tree.cells.push(node_of(&[])),
             [root] => tree.root = root,
             _ => {
                 let nodes = Collapse::new(&top, 1).run(&mut tree, |_, node| roots[top[node].first as usize]);
@@ -140,6 +140,7 @@ impl Tree {
             }
         }
         tree.depth += below;
+        tree.cells.settle();
         tree
     }
 
@@ -148,39 +149,34 @@ impl Tree {
         (WIDTH - 1) * self.depth + 1 + WIDTH
     }
 
-    #[inline(always)]
-    pub(super) fn cell(&self, child: Child) -> &Cell {
-        &self.cells[(child.0 & !LEAF) as usize]
+    pub(super) fn cell(&self, child: Child) -> Cell<'_> {
+        self.view().cell(child)
     }
 
-    /// Has the memory fetch a cell.
-    #[inline(always)]
-    pub(super) fn prefetch(&self, child: Child) {
-        let rows = &self.cell(child).0;
-        for line in 0..5 {
-            fetch(&rows[2 * line]);
-        }
+    /// The tree as traversals see it.
+    pub(super) fn view(&self) -> View<'_> {
+        View { tree: self, rows: self.cells.rows() }
     }
 
     /// Bytes that the tree occupies.
     pub(super) fn bytes(&self) -> usize {
-        self.cells.capacity() * size_of::<Cell>()
+        size_of_val(self.cells.rows())
     }
 
     /// How many nodes and blocks there are.
     pub(super) fn cell_count(&self) -> usize {
-        self.cells.len()
+        self.cells.rows().len()
     }
 
     /// Appends a node, to be filled in, and takes note of how deep it lies.
     pub(super) fn new_node(&mut self, depth: usize) -> Child {
         self.depth = self.depth.max(depth);
-        self.cells.push(Cell::node(&[]));
-        Child((self.cells.len() - 1) as u32)
+        self.cells.push(node_of(&[]));
+        Child((self.cells.rows().len() - 1) as u32)
     }
 
     pub(super) fn set_node(&mut self, node: Child, children: &[(Box3, Child)]) {
-        self.cells[node.0 as usize] = Cell::node(children);
+        self.cells.set(node.0 as usize, node_of(children));
     }
 
     /// Appends a block of triangles.
@@ -188,8 +184,31 @@ impl Tree {
         let index: [u32; WIDTH] = std::array::from_fn(|i| triangles.get(i).copied().unwrap_or(triangles[0]));
         let corners = index.map(|i| geometry.world_triangle(i).corners);
         let [a, b, c] = [0, 1, 2].map(|c| Vec3::from_lanes(|l| corners[l][c]));
-        self.cells.push(Cell([a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, U32x8::new(index).as_real()]));
-        Child((self.cells.len() - 1) as u32 | LEAF)
+        self.cells.push([a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, U32x8::new(index).as_real()].map(|row| row.0));
+        Child((self.cells.rows().len() - 1) as u32 | LEAF)
+    }
+}
+
+/// A tree while rays are cast.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub(super) tree: &'a Tree,
+    rows: &'a [Rows],
+}
+
+impl<'a> View<'a> {
+    #[inline(always)]
+    pub(super) fn cell(self, child: Child) -> Cell<'a> {
+        Cell(&self.rows[(child.0 & !LEAF) as usize])
+    }
+
+    /// Has the memory fetch a cell.
+    #[inline(always)]
+    pub(super) fn prefetch(self, child: Child) {
+        let rows = &self.rows[(child.0 & !LEAF) as usize];
+        for line in 0..5 {
+            fetch(&rows[2 * line]);
+        }
     }
 }
 
@@ -216,44 +235,45 @@ fn triangles(binary: &[sah::Binary], node: usize) -> Vec<u32> {
     found
 }
 
-impl Cell {
-    /// A node of children and their boxes.
-    fn node(children: &[(Box3, Child)]) -> Self {
-        let plane = |pick: fn(&Box3) -> f32| {
-            F32x8::new(std::array::from_fn(|slot| pick(children.get(slot).map_or(&Box3::EMPTY, |(bounds, _)| bounds))))
+/// A node of children and their boxes.
+fn node_of(children: &[(Box3, Child)]) -> Rows {
+    let plane = |pick: fn(&Box3) -> f32| {
+        F32x8::new(std::array::from_fn(|slot| pick(children.get(slot).map_or(&Box3::EMPTY, |(bounds, _)| bounds))))
+    };
+    let order = |octant: usize| {
+        let sign = |axis: usize| if octant >> axis & 1 == 0 { 1.0 } else { -1.0 };
+        let depth = |slot: &usize| {
+            let center = children[*slot].0.center2();
+            center.x * sign(0) + center.y * sign(1) + center.z * sign(2)
         };
-        let order = |octant: usize| {
-            let sign = |axis: usize| if octant >> axis & 1 == 0 { 1.0 } else { -1.0 };
-            let depth = |slot: &usize| {
-                let center = children[*slot].0.center2();
-                center.x * sign(0) + center.y * sign(1) + center.z * sign(2)
-            };
-            let mut slots: Vec<usize> = (0..children.len()).collect();
-            slots.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
-            slots.iter().enumerate().fold(0, |packed, (place, &slot)| packed | (slot as u32) << (3 * place))
-        };
-        // An order that is short repeats slot 0: unused slots must stay unused.
-        let order = |octant: usize| {
-            (children.len()..WIDTH).fold(order(octant), |packed, slot| packed | (slot as u32) << (3 * slot))
-        };
-        Self([
-            plane(|b| b.lo.x),
-            plane(|b| b.hi.x),
-            plane(|b| b.lo.y),
-            plane(|b| b.hi.y),
-            plane(|b| b.lo.z),
-            plane(|b| b.hi.z),
-            U32x8::new(std::array::from_fn(|slot| children.get(slot).map_or(0, |child| child.1.0))).as_real(),
-            U32x8::new(std::array::from_fn(order)).as_real(),
-            F32x8::ZERO,
-            F32x8::ZERO,
-        ])
-    }
+        let mut slots: Vec<usize> = (0..children.len()).collect();
+        slots.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
+        slots.iter().enumerate().fold(0, |packed, (place, &slot)| packed | (slot as u32) << (3 * place))
+    };
+    // An order that is short repeats slot 0: unused slots must stay unused.
+    let order = |octant: usize| {
+        (children.len()..WIDTH).fold(order(octant), |packed, slot| packed | (slot as u32) << (3 * slot))
+    };
+    [
+        plane(|b| b.lo.x),
+        plane(|b| b.hi.x),
+        plane(|b| b.lo.y),
+        plane(|b| b.hi.y),
+        plane(|b| b.lo.z),
+        plane(|b| b.hi.z),
+        U32x8::new(std::array::from_fn(|slot| children.get(slot).map_or(0, |child| child.1.0))).as_real(),
+        U32x8::new(std::array::from_fn(order)).as_real(),
+        F32x8::ZERO,
+        F32x8::ZERO,
+    ]
+    .map(|row| row.0)
+}
 
+impl Cell<'_> {
     /// The children of a node and their boxes.
-    pub(super) fn slots(&self) -> impl Iterator<Item = (Box3, Child)> {
+    pub(super) fn slots(self) -> impl Iterator<Item = (Box3, Child)> {
         let corner = |side: usize, slot: usize| {
-            let [x, y, z] = [0, 2, 4].map(|axis| self.0[axis + side].lane(slot));
+            let [x, y, z] = [0, 2, 4].map(|axis| F32x8(self.0[axis + side]).lane(slot));
             Vec4::new(x, y, z, 1.0)
         };
         let children = self.children();
