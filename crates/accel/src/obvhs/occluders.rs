@@ -2,8 +2,8 @@
 //!
 //! Neighbours look for a way to the same light, or out of the same room, and a wall is two triangles. So rays that look for any
 //! hit are first tested, eight at once, against the [`MOST`] triangles that were of use lately, which costs a ray less than one visit
-//! of a node (compare Haines & Greenberg 1986, "The Light Buffer: A Shadow-Testing Accelerator"). One that blocks a ray again moves to
-//! the front; a new one takes the last place. The answer is that of the tree, because the test is.
+//! of a node (compare Haines & Greenberg 1986, "The Light Buffer: A Shadow-Testing Accelerator"). One that blocks a ray again moves
+//! ahead; a new one takes the last place. The answer is that of the tree, because the test is.
 
 use super::flight::crossing;
 use super::tree::Cell;
@@ -14,10 +14,12 @@ use gonio_kernel::{F32x8, Mask, Mask8, Vec3};
 /// How many are remembered.
 const MOST: usize = 4;
 
-/// Corners of triangles, each in all eight lanes, the most useful first.
+/// Corners of triangles, each in all eight lanes.
 #[derive(Default)]
 pub(super) struct Occluders {
     corners: Vec<[Vec3<F32x8>; 3]>,
+    /// Their places, the most useful first.
+    order: [u8; MOST],
 }
 
 impl Occluders {
@@ -25,11 +27,12 @@ impl Occluders {
     #[inline(always)]
     pub(super) fn shut<const FAST: bool>(&mut self, ray: &Ray8, beam: &Beam, live: Mask8) -> Mask8 {
         let mut open = live;
-        for place in 0..self.corners.len() {
-            let hit = crossing::<FAST>(beam, &self.corners[place], ray.t_min, ray.t_max).mask & open;
+        for rank in 0..self.corners.len() {
+            let corners = &self.corners[usize::from(self.order[rank])];
+            let hit = crossing::<FAST>(beam, corners, ray.t_min, ray.t_max).mask & open;
             if hit.any() {
                 open = open & !hit;
-                self.corners[..=place].rotate_right(1);
+                self.order.swap(rank, rank.saturating_sub(1));
             }
         }
         live & !open
@@ -40,9 +43,11 @@ impl Occluders {
     pub(super) fn add(&mut self, block: Cell<'_>, lane: usize) {
         let one = |x: F32x8| F32x8::splat(x.lane(lane));
         let corners = block.corners().map(|c| Vec3::new(one(c.x), one(c.y), one(c.z)));
-        if self.corners.len() == MOST {
-            self.corners.pop();
+        if self.corners.len() < MOST {
+            self.order[self.corners.len()] = self.corners.len() as u8;
+            self.corners.push(corners);
+        } else {
+            self.corners[usize::from(self.order[MOST - 1])] = corners;
         }
-        self.corners.push(corners);
     }
 }
