@@ -65,12 +65,15 @@ const STEEPEST: f32 = 1e18;
 const PLANE_ERROR: f32 = 8.0 * U;
 
 /// The ray is steep if |n·d| is at least this times the sum of the absolute products of n. Then h/n·d is off by at most
-/// 2 · 8u/2⁻⁶ of the reach, and the place where the ray meets the plane lies at most 8u/2⁻⁶ of it outside the triangle:
-/// together 1.5·2⁻¹⁴.
-const STEEP: f32 = 1.0 / 64.0;
+/// 2 · 8u/2⁻⁴ of the reach, and the place where the ray meets the plane lies at most 8u/2⁻⁴ of it outside the triangle:
+/// together 1.5·2⁻¹⁶.
+const STEEP: f32 = 1.0 / 16.0;
 
-/// The slack of distances as a part of the reach: 2⁻¹³, see [`STEEP`].
-const SLACK: f32 = 1.0 / 8192.0;
+/// The slack of distances as a part of the reach: 2⁻¹⁵, see [`STEEP`].
+const SLACK: f32 = 1.0 / 32_768.0;
+
+/// The slack of the fast test, which promises nothing to the last bit: no more than the padding of boxes.
+const FAST_SLACK: f32 = PAD;
 
 /// Rays with what their tests need, computed once per ray: eight rays, or one ray in all eight lanes.
 #[derive(Clone, Copy, Debug)]
@@ -83,7 +86,8 @@ pub struct Beam {
     enter: Vec3<F32x8>,
     /// The same for a far plane.
     leave: Vec3<F32x8>,
-    slack: F32x8,
+    /// The distance to the farthest corner of the scene, at most.
+    reach: F32x8,
 }
 
 impl Beam {
@@ -100,7 +104,7 @@ impl Beam {
         let offset = Vec3::new(inverse.x * origin.x, inverse.y * origin.y, inverse.z * origin.z);
         let enter = Vec3::new(-offset.x - pad.x, -offset.y - pad.y, -offset.z - pad.z);
         let leave = pad - offset;
-        Self { origin, dir, across: [u, v], inverse, enter, leave, slack: reach * F32x8::splat(SLACK) }
+        Self { origin, dir, across: [u, v], inverse, enter, leave, reach }
     }
 
     /// Lane `lane` of these rays, in all eight lanes.
@@ -115,7 +119,7 @@ impl Beam {
             inverse: each(self.inverse),
             enter: each(self.enter),
             leave: each(self.leave),
-            slack: one(self.slack),
+            reach: one(self.reach),
         }
     }
 
@@ -150,10 +154,10 @@ impl Beam {
         (self.leave - self.enter) * F32x8::splat(0.5)
     }
 
-    /// By how much a hit's t may lie outside the slab interval of a box around the triangle.
+    /// By how much a hit's t may lie outside the slab interval of a box around the triangle, by either test.
     #[inline(always)]
-    pub fn slack(&self) -> F32x8 {
-        self.slack
+    pub fn slack<const FAST: bool>(&self) -> F32x8 {
+        self.reach * F32x8::splat(if FAST { FAST_SLACK } else { SLACK })
     }
 
     /// The padded slab interval \[t_near, t_far\] of boxes whose near and far planes are given.

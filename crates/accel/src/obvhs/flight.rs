@@ -162,7 +162,7 @@ impl View<'_> {
         walk.ray = packet * F32x8::LANES + lane;
         walk.beam = queue.beam.splat_lane(lane);
         (walk.t_min, walk.t_best) = (queue.rays[packet].t_min.lane(lane), queue.rays[packet].t_max.lane(lane));
-        walk.slack = queue.beam.slack().lane(lane);
+        walk.slack = queue.beam.slack::<FAST>().lane(lane);
         (walk.from, walk.until) = (walk.t_min - walk.slack, walk.t_best + walk.slack);
         (walk.index, walk.top, walk.next) = (NO_HIT, walk.base, self.tree.root);
         true

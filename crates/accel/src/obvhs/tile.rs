@@ -30,6 +30,7 @@ struct Packet {
     live: Mask8,
     t_min: F32x8,
     t_best: F32x8,
+    slack: F32x8,
     /// Boxes count that a ray is in between here,
     from: F32x8,
     /// and here; nowhere if it is not alive.
@@ -40,15 +41,16 @@ struct Packet {
 }
 
 impl Packet {
-    fn new(ray: &Ray8, tree: &Tree) -> Self {
+    fn new<const FAST: bool>(ray: &Ray8, tree: &Tree) -> Self {
         let beam = Beam::new(ray.origin, ray.dir, tree.lo, tree.hi);
-        let (live, slack) = (sound(ray), beam.slack());
+        let (live, slack) = (sound(ray), beam.slack::<FAST>());
         Self {
             beam,
             live,
             t_min: ray.t_min,
             t_best: ray.t_max,
             from: ray.t_min - slack,
+            slack,
             until: F32x8::select(live, ray.t_max + slack, F32x8::splat(f32::NEG_INFINITY)),
             edges: [F32x8::ZERO; 3],
             index: U32x8::splat(NOWHERE),
@@ -80,7 +82,7 @@ impl Packet {
         let better = crossing.mask & live & nearer;
         if better.any() {
             self.t_best = F32x8::select(better, crossing.t, self.t_best);
-            self.until = F32x8::select(better, crossing.t + self.beam.slack(), self.until);
+            self.until = F32x8::select(better, crossing.t + self.slack, self.until);
             for (best, edge) in self.edges.iter_mut().zip(crossing.edges()) {
                 *best = F32x8::select(better, *edge, *best);
             }
@@ -212,11 +214,11 @@ impl View<'_> {
         let Some(first) = rays.first().filter(|_| !self.tree.root.is_leaf()) else { return alone(rays, hits) };
         let size = self.tree.stack_size();
         let mut stack = Stack { children: vec![0; size], nears: vec![0.0; size] };
-        let mut packets = [Packet::new(first, self.tree); PACKETS];
+        let mut packets = [Packet::new::<FAST>(first, self.tree); PACKETS];
         for (rays, hits) in rays.chunks(PACKETS).zip(hits.chunks_mut(PACKETS)) {
             let packets = &mut packets[..rays.len()];
             for (packet, ray) in packets.iter_mut().zip(rays) {
-                *packet = Packet::new(ray, self.tree);
+                *packet = Packet::new::<FAST>(ray, self.tree);
             }
             // As one tile; if they have not enough in common, each packet for itself; if even that has not, each ray.
             if let Some(interval) = Interval::of(packets) {
