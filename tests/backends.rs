@@ -2,17 +2,30 @@
 //! surfaces.
 
 use crate::support::{Random, crowd, geometry, grid, hills, side_by_side, soup, sphere};
-use gonio_accel::{Accel, Brute, Geometry, GeometryError, Hit, Hit8, Intersect, Mesh, Obvhs, Opacity, Ray8, RayKind};
+use gonio_accel::{
+    Accel, Brute, Geometry, GeometryError, Hit, Hit8, Intersect, Mesh, Obvhs, ObvhsOptions, Opacity, Ray8, RayKind,
+};
 use gonio_kernel::{F32x8, Mask8, Vec3};
 use gonio_tracer::Backend;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 
-/// The hits of one packet, misses as `None`.
+/// The hits of some packets, misses as `None`.
 fn hits(accel: &dyn Accel, rays: &[Ray8]) -> Vec<Option<Hit>> {
+    hits_by(RayKind::Incoherent, accel, rays)
+}
+
+fn hits_by(kind: RayKind, accel: &dyn Accel, rays: &[Ray8]) -> Vec<Option<Hit>> {
     let mut hits = vec![Hit8::miss(); rays.len()];
-    accel.closest(RayKind::Incoherent, rays, &mut hits);
+    accel.closest(kind, rays, &mut hits);
     hits.iter().flat_map(|h| (0..8).map(|l| h.lane(l))).collect()
+}
+
+/// The tree, even over few triangles.
+fn tree_of(geometry: &Geometry) -> Obvhs {
+    let tree = Obvhs::always_tree(geometry, ObvhsOptions::default());
+    assert_eq!(tree.validate(), Ok(()));
+    tree
 }
 
 fn blocked(accel: &dyn Accel, rays: &[Ray8], filter: Option<&dyn Opacity>) -> Vec<u32> {
@@ -74,6 +87,67 @@ fn telling_rays(geometry: &Geometry, count: usize, random: &mut Random) -> Vec<R
         .collect()
 }
 
+/// Rays of cameras: up to nine packets that start together and point the same way, more or less, many of them at vertices.
+fn tiles_of_rays(geometry: &Geometry, random: &mut Random) -> Vec<Ray8> {
+    let triangles: Vec<_> = geometry.world_triangles().map(|t| t.corners).collect();
+    let (spread, apart) = (0.3 * random.unit().powi(4), 0.1 * random.unit().powi(4) * f32::from(random.pick(2) as u8));
+    let aim = triangles[random.pick(triangles.len())][random.pick(3)];
+    let eye = if random.pick(4) == 0 { aim } else { aim + random.point([0.5, 3.0, 300.0][random.pick(3)]) };
+    let axis = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, -1.0, 0.0), Vec3::new(0.0, -0.0, 1.0)][random.pick(3)];
+    let forth = if random.pick(4) == 0 { axis } else { (aim - eye).normalize_or(axis) };
+    (0..1 + random.pick(9))
+        .map(|i| {
+            let lanes: [_; 8] = std::array::from_fn(|_| {
+                let to = forth + random.point(spread);
+                (eye + random.point(apart), if random.pick(8) == 0 { forth } else { to.normalize_or(axis) })
+            });
+            let mut ray = Ray8::new(side_by_side(lanes.map(|l| l.0)), side_by_side(lanes.map(|l| l.1)));
+            if i % 4 == 1 {
+                ray.t_min = F32x8::splat(0.1);
+                ray.t_max = F32x8::splat(1.5);
+                ray.mask = Mask8::from_bits(random.pick(256) as u32);
+            }
+            ray
+        })
+        .collect()
+}
+
+#[test]
+fn rays_in_tiles_agree_with_brute_to_the_last_bit() {
+    let mut random = Random(17);
+    let (mut met, mut all) = (0, 0);
+    for (name, geometry) in small_geometries() {
+        let (brute, tree) = (Brute::new(&geometry), tree_of(&geometry));
+        for _ in 0..if geometry.triangle_count() > 1000 { 60 } else { 300 } {
+            let rays = tiles_of_rays(&geometry, &mut random);
+            let expected = hits(&brute, &rays);
+            for (i, (a, b)) in expected.iter().zip(hits_by(RayKind::Coherent, &tree, &rays)).enumerate() {
+                assert_eq!(bits(a), bits(&b), "{name}: lane {} of {:?}", i % 8, rays[i / 8]);
+            }
+            assert_eq!(blocked(&brute, &rays, None), blocked(&tree, &rays, None), "{name}");
+            met += expected.iter().flatten().count();
+            all += expected.len();
+        }
+    }
+    assert!(4 * met > all && 20 * (all - met) > all, "{met} of {all} rays meet something");
+}
+
+#[test]
+fn a_million_coincident_triangles_are_one_to_every_ray() {
+    let mesh =
+        Mesh { positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], triangles: vec![[0, 1, 2]; 1_000_000] };
+    let geometry = geometry(mesh);
+    let tree = tree_of(&geometry);
+    let lanes: [_; 8] = std::array::from_fn(|l| Vec3::new(0.05 + 0.11 * l as f32, 0.1, -1.0));
+    let rays = [Ray8::new(side_by_side(lanes), side_by_side([Vec3::new(0.0, 0.0, 1.0); 8])); 4];
+    for kind in [RayKind::Coherent, RayKind::Incoherent] {
+        for hit in hits_by(kind, &tree, &rays) {
+            assert!(hit.is_some_and(|hit| hit.prim == 0 && hit.t == 1.0), "{kind:?}: {hit:?}"); // ties go to the first
+        }
+    }
+    assert_eq!(blocked(&tree, &rays, None), [0xff; 4]);
+}
+
 fn small_geometries() -> Vec<(&'static str, Geometry)> {
     let mut random = Random(11);
     let twice = {
@@ -101,11 +175,8 @@ fn small_geometries() -> Vec<(&'static str, Geometry)> {
 fn lists_and_trees_agree_with_brute_to_the_last_bit() {
     for (name, geometry) in small_geometries() {
         let rays = telling_rays(&geometry, 60_000, &mut Random(5));
-        let (brute, obvhs, tree) = (
-            Brute::new(&geometry),
-            Obvhs::new(&geometry, Intersect::Robust),
-            Obvhs::always_tree(&geometry, Intersect::Robust),
-        );
+        let (brute, obvhs, tree) =
+            (Brute::new(&geometry), Obvhs::new(&geometry, Intersect::Robust), tree_of(&geometry));
         let expected = hits(&brute, &rays);
         for accel in [&obvhs, &tree] {
             for (i, (a, b)) in expected.iter().zip(hits(accel, &rays)).enumerate() {
@@ -130,7 +201,7 @@ fn a_wrong_answer_would_be_noticed() {
 
 /// Every backend of this build, robust, the tree of obvhs where it would be a list, and Embree's other ways.
 fn all(geometry: &Geometry) -> Vec<Box<dyn Accel>> {
-    let tree: Box<dyn Accel> = Box::new(Obvhs::always_tree(geometry, Intersect::Robust));
+    let tree: Box<dyn Accel> = Box::new(tree_of(geometry));
     let built = |backend: Backend| backend.build(geometry, Intersect::Robust).expect("the backend builds");
     let ways = ways_of_embree(geometry, Intersect::Robust).into_iter().map(|(_, accel)| accel);
     Backend::ALL.into_iter().map(built).chain([tree]).chain(ways).collect()
@@ -474,7 +545,7 @@ fn a_long_tail_of_shrinking_triangles_does_not_overflow_the_stack() {
     let geometry = geometry(mesh);
     let rays = telling_rays(&geometry, 8_000, &mut Random(2));
     let expected = hits(&Brute::new(&geometry), &rays);
-    for (i, (a, b)) in expected.iter().zip(hits(&Obvhs::always_tree(&geometry, Intersect::Robust), &rays)).enumerate() {
+    for (i, (a, b)) in expected.iter().zip(hits(&tree_of(&geometry), &rays)).enumerate() {
         assert_eq!(bits(a), bits(&b), "lane {} of {:?}", i % 8, rays[i / 8]);
     }
 }

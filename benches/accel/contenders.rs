@@ -1,20 +1,25 @@
 //! Who takes part: obvhs with its presets, and Embree, if this build has it, in all its ways.
 
-use gonio_accel::{Accel, Geometry, Intersect, Obvhs, RayKind};
+use gonio_accel::{Accel, Geometry, Intersect, Obvhs, ObvhsOptions, ObvhsPreset, RayKind};
 #[cfg(feature = "embree")]
 use gonio_accel::{Embree, EmbreeOptions, EmbreeQuality, EmbreeWidth};
 use std::sync::Arc;
 
 /// Presets of obvhs; speeds are compared with the first.
-const PRESETS: &[&str] = &["default"];
+const PRESETS: &[&str] = &["medium", "fast", "high"];
 
-fn obvhs(_preset: &str, geometry: &Geometry, intersect: Intersect) -> Obvhs {
-    Obvhs::new(geometry, intersect)
+fn obvhs(preset: &str, geometry: &Geometry, intersect: Intersect) -> Obvhs {
+    let preset = match preset {
+        "fast" => ObvhsPreset::Fast,
+        "high" => ObvhsPreset::High,
+        _ => ObvhsPreset::Medium,
+    };
+    Obvhs::with(geometry, ObvhsOptions { intersect, preset }, &mut |_| ())
 }
 
 /// What the tree takes, if it knows.
-fn bytes(_tree: &Obvhs) -> Option<usize> {
-    None
+fn bytes(tree: &Obvhs) -> Option<usize> {
+    Some(tree.bytes())
 }
 
 /// Builds a tree of some quality.

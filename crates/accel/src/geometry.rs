@@ -81,6 +81,11 @@ pub(crate) struct Order {
 }
 
 impl Order {
+    /// How many triangles there are.
+    pub(crate) fn count(&self) -> usize {
+        self.starts.last().map_or(0, |&count| count as usize)
+    }
+
     /// The triangle at a place below the number of all.
     #[inline]
     pub(crate) fn id(&self, index: u32) -> TriangleId {
@@ -157,7 +162,7 @@ impl Geometry {
 
     /// How many triangles all instances have together.
     pub fn triangle_count(&self) -> usize {
-        self.order.starts.last().map_or(0, |&count| count as usize)
+        self.order.count()
     }
 
     pub(crate) fn order(&self) -> &Order {

@@ -10,6 +10,8 @@
 //! each: while the memory fetches one's node, the others go on. None of this changes a result.
 
 mod boxes;
+mod bridge;
+mod check;
 mod collapse;
 mod few;
 mod flight;
@@ -25,6 +27,7 @@ use crate::brute::scalar_hit;
 use crate::geometry::{Geometry, TriangleId};
 use crate::ray::{Hit, Hit8, NO_HIT, Opacity, Ray8, RayKind};
 use crate::triangle::{Beam, Crossing, Intersect, barycentric};
+pub use check::TreeError;
 use few::Few;
 use flight::{Quest, Walk};
 use gonio_kernel::{F32x8, Mask8};
@@ -41,23 +44,63 @@ enum Structure {
     List(Few),
 }
 
+/// How much time is spent to build a tree.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ObvhsPreset {
+    /// As little as possible: the tree of `obvhs`' PLOC builder.
+    Fast,
+    /// From the top down, by the surface area heuristic.
+    #[default]
+    Medium,
+    /// The same, then improved by `obvhs`' reinsertion: several times the time.
+    High,
+}
+
+/// How a tree is built and rays are tested.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ObvhsOptions {
+    /// How strictly rays are tested. A list of few triangles keeps the watertight test, which costs it nothing.
+    pub intersect: Intersect,
+    /// How much time is spent to build.
+    pub preset: ObvhsPreset,
+}
+
 impl Obvhs {
-    /// Builds the tree: deterministic, O(n log n). A list of few triangles keeps the watertight test, which costs it nothing.
+    /// Builds a tree by the preset [`ObvhsPreset::Medium`]: O(n log n). The tree is the same for any number of threads.
     pub fn new(geometry: &Geometry, intersect: Intersect) -> Self {
-        Self::with_progress(geometry, intersect, &mut |_| ())
+        Self::with(geometry, ObvhsOptions { intersect, ..ObvhsOptions::default() }, &mut |_| ())
     }
 
-    /// Builds the tree and tells now and then of how many triangles it is done.
-    pub fn with_progress(geometry: &Geometry, intersect: Intersect, progress: &mut dyn FnMut(usize)) -> Self {
+    /// Builds a tree and tells now and then of how many triangles it is done.
+    pub fn with(geometry: &Geometry, options: ObvhsOptions, progress: &mut dyn FnMut(usize)) -> Self {
         Self(match Few::of(geometry) {
             Some(few) => Structure::List(few),
-            None => Structure::Tree(Tree::build(geometry, progress), intersect),
+            None => Structure::Tree(Tree::build(geometry, options.preset, progress), options.intersect),
         })
     }
 
     /// Builds a tree even where a list would be faster: for tests of the tree.
-    pub fn always_tree(geometry: &Geometry, intersect: Intersect) -> Self {
-        Self(Structure::Tree(Tree::build(geometry, &mut |_| ()), intersect))
+    pub fn always_tree(geometry: &Geometry, options: ObvhsOptions) -> Self {
+        Self(Structure::Tree(Tree::build(geometry, options.preset, &mut |_| ()), options.intersect))
+    }
+
+    /// Bytes of nodes and triangles together, without the geometry that they were made from.
+    pub fn bytes(&self) -> usize {
+        match &self.0 {
+            Structure::List(few) => few.bytes(),
+            Structure::Tree(tree, _) => tree.bytes(),
+        }
+    }
+
+    /// Looks at every cell of the tree: whether boxes contain what is below them, and every triangle is there once. O(n).
+    ///
+    /// # Errors
+    /// The first thing that is wrong, which is a bug of ours.
+    pub fn validate(&self) -> Result<(), TreeError> {
+        match &self.0 {
+            Structure::List(_) => Ok(()),
+            Structure::Tree(tree, _) => tree.check(),
+        }
     }
 
     #[cfg(test)]

@@ -3,7 +3,7 @@
 use crate::scene::{Loading, Stage};
 #[cfg(feature = "embree")]
 use gonio_accel::Embree;
-use gonio_accel::{Accel, Brute, Geometry, Intersect, Obvhs};
+use gonio_accel::{Accel, Brute, Geometry, Intersect, Obvhs, ObvhsOptions};
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -72,7 +72,7 @@ impl Backend {
         tell(0);
         Ok(match self {
             Self::Brute => Box::new(Brute::new(geometry)),
-            Self::Obvhs => Box::new(Obvhs::with_progress(geometry, intersect, &mut tell)),
+            Self::Obvhs => Box::new(Obvhs::with(geometry, ObvhsOptions { intersect, ..Default::default() }, &mut tell)),
             #[cfg(feature = "embree")]
             Self::Embree => {
                 let built = Embree::new(geometry, intersect);

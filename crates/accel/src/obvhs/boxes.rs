@@ -32,6 +32,12 @@ impl Box3 {
         Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
+    /// Whether the other lies within this one.
+    pub(super) fn contains(self, other: Self) -> bool {
+        let (lo, hi) = (self.lo.cmple(other.lo), self.hi.cmpge(other.hi));
+        (lo & hi).bitmask() & 7 == 7
+    }
+
     /// Half the surface; of no points not a number or infinite.
     #[inline(always)]
     pub(super) fn half_area(self) -> f32 {

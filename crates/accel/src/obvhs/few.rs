@@ -56,6 +56,11 @@ impl Few {
         Some(Self { vertices, rows, lo, hi })
     }
 
+    /// Bytes that the list occupies.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(self.vertices.as_slice()) + size_of_val(self.rows.as_slice())
+    }
+
     fn project(&self, ray: &Ray8, projected: &mut Projected) -> Beam {
         let beam = Beam::new(ray.origin, ray.dir, self.lo, self.hi);
         for (v, p) in self.vertices.iter().zip(projected) {

@@ -36,8 +36,9 @@ impl Pages {
     }
 
     pub(super) fn set(&mut self, place: usize, rows: Rows) {
-        if let Self::Heap(all) = self {
-            all[place] = rows;
+        match self {
+            Self::Heap(all) => all[place] = rows,
+            Self::Huge(map) => bytemuck::cast_slice_mut(map)[place] = rows,
         }
     }
 

@@ -60,7 +60,8 @@ pub(super) fn build(refs: &mut [Ref]) -> Vec<Binary> {
 /// Cuts triangles into ranges of at most so many, where a tree would be cut: the ends of the ranges.
 pub(super) fn split(refs: &mut [Ref], most: usize) -> Vec<usize> {
     let mut ends = Vec::new();
-    let mut work = vec![0..refs.len()];
+    let whole = 0..refs.len();
+    let mut work = vec![whole];
     while let Some(range) = work.pop() {
         if range.len() <= most {
             ends.push(range.end);

@@ -8,7 +8,7 @@
 use super::boxes::{Box3, Ref};
 use super::collapse::Collapse;
 use super::pages::{Pages, Rows};
-use super::{order, sah};
+use super::{ObvhsPreset, bridge, order, sah};
 use crate::geometry::{Geometry, Order};
 use glam::Vec4;
 use gonio_kernel::{F32x8, Real, U32x8, Vec3};
@@ -29,6 +29,12 @@ impl Child {
     #[inline(always)]
     pub(super) fn is_leaf(self) -> bool {
         self.0 & LEAF != 0
+    }
+
+    /// Where its cell is.
+    #[inline(always)]
+    pub(super) fn place(self) -> usize {
+        (self.0 & !LEAF) as usize
     }
 
     /// A mask instead of a branch.
@@ -98,12 +104,12 @@ pub(super) struct Tree {
 
 impl Tree {
     /// The tree over all triangles; `progress` is told how many are done.
-    pub(super) fn build(geometry: &Geometry, progress: &mut dyn FnMut(usize)) -> Self {
-        Self::in_parts(geometry, PART, progress)
+    pub(super) fn build(geometry: &Geometry, preset: ObvhsPreset, progress: &mut dyn FnMut(usize)) -> Self {
+        Self::in_parts(geometry, preset, PART, progress)
     }
 
     /// The tree in parts of at most so many triangles.
-    fn in_parts(geometry: &Geometry, most: usize, progress: &mut dyn FnMut(usize)) -> Self {
+    fn in_parts(geometry: &Geometry, preset: ObvhsPreset, most: usize, progress: &mut dyn FnMut(usize)) -> Self {
         let none = Vec3::splat(0.0);
         let order = geometry.order().clone();
         let mut tree = Self { cells: Pages::default(), root: Child(0), order, lo: none, hi: none, depth: 1 };
@@ -113,7 +119,12 @@ impl Tree {
         let mut parts = Vec::new();
         let mut start = 0;
         for end in sah::split(&mut refs, most) {
-            let binary = sah::build(&mut refs[start..end]);
+            let part = &mut refs[start..end];
+            let binary = match preset {
+                ObvhsPreset::Fast => bridge::ploc(part),
+                ObvhsPreset::Medium => sah::build(part),
+                ObvhsPreset::High => bridge::reinserted(sah::build(part)),
+            };
             if let Some(root) = binary.first() {
                 parts.push(Ref::new(root.bounds(), roots.len() as u32));
                 let leaf = |tree: &mut Self, node: usize| tree.block(geometry, &triangles(&binary, node));
@@ -176,7 +187,7 @@ impl Tree {
     }
 
     pub(super) fn set_node(&mut self, node: Child, children: &[(Box3, Child)]) {
-        self.cells.set(node.0 as usize, node_of(children));
+        self.cells.set(node.place(), node_of(children));
     }
 
     /// Appends a block of triangles.
@@ -199,13 +210,13 @@ pub(super) struct View<'a> {
 impl<'a> View<'a> {
     #[inline(always)]
     pub(super) fn cell(self, child: Child) -> Cell<'a> {
-        Cell(&self.rows[(child.0 & !LEAF) as usize])
+        Cell(&self.rows[child.place()])
     }
 
     /// Has the memory fetch a cell.
     #[inline(always)]
     pub(super) fn prefetch(self, child: Child) {
-        let rows = &self.rows[(child.0 & !LEAF) as usize];
+        let rows = &self.rows[child.place()];
         for line in 0..5 {
             fetch(&rows[2 * line]);
         }
@@ -250,7 +261,7 @@ fn node_of(children: &[(Box3, Child)]) -> Rows {
         slots.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
         slots.iter().enumerate().fold(0, |packed, (place, &slot)| packed | (slot as u32) << (3 * place))
     };
-    // An order that is short repeats slot 0: unused slots must stay unused.
+    // Unused slots too have a place in the order: slot 0 must not stand in for them.
     let order = |octant: usize| {
         (children.len()..WIDTH).fold(order(octant), |packed, slot| packed | (slot as u32) << (3 * slot))
     };
@@ -285,7 +296,7 @@ impl Cell<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Accel, Brute, Hit8, Mesh, Obvhs, Ray8, RayKind};
+    use crate::{Accel, Brute, Hit8, Mesh, Obvhs, Ray8, RayKind, TreeError};
 
     /// Waves of n × n squares, of which a strip is one point, so that no plane can part it.
     fn waves(n: u32) -> Geometry {
@@ -300,15 +311,23 @@ mod tests {
         Geometry::of_mesh(Mesh { positions, triangles }).unwrap()
     }
 
+    const PRESETS: [ObvhsPreset; 3] = [ObvhsPreset::Fast, ObvhsPreset::Medium, ObvhsPreset::High];
+
+    fn bits(tree: &Tree) -> Vec<u32> {
+        tree.cells.rows().iter().flatten().flat_map(|row| row.to_array().map(f32::to_bits)).collect()
+    }
+
     #[test]
-    fn a_tree_in_parts_finds_what_brute_finds() {
+    fn a_tree_in_parts_is_sound_and_finds_what_brute_finds() {
         let geometry = waves(24);
         let brute = Brute::new(&geometry);
-        for most in [1, 7, 100, 1000, PART] {
+        for (most, preset) in [1, 7, 100, 1000, PART].into_iter().flat_map(|most| PRESETS.map(|preset| (most, preset)))
+        {
             let mut told = Vec::new();
-            let tree = Tree::in_parts(&geometry, most, &mut |done| told.push(done));
+            let tree = Tree::in_parts(&geometry, preset, most, &mut |done| told.push(done));
             assert_eq!(told.last(), Some(&geometry.triangle_count()));
             assert!(told.len() >= geometry.triangle_count() / most);
+            assert_eq!(tree.check(), Ok(()), "{preset:?} in parts of {most}");
             let tree = Obvhs::of_tree(tree);
             let mut met = 0;
             for i in 0..400 {
@@ -326,5 +345,52 @@ mod tests {
             }
             assert!(met > 1000, "{met} of 3200 rays meet something");
         }
+    }
+
+    #[test]
+    fn any_number_of_threads_builds_the_same_tree() {
+        // Enough for several ranges that are worth a thread.
+        let geometry = waves(160);
+        for preset in PRESETS {
+            let with = |threads: usize| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                pool.install(|| bits(&Tree::build(&geometry, preset, &mut |_| ())))
+            };
+            let alone = with(1);
+            for threads in [2, 3, 8] {
+                assert!(alone == with(threads), "{preset:?} with {threads} threads");
+            }
+        }
+    }
+
+    #[test]
+    fn a_broken_tree_is_noticed() {
+        let geometry = waves(24);
+        let sound = Tree::build(&geometry, ObvhsPreset::Medium, &mut |_| ());
+        assert_eq!(sound.check(), Ok(()));
+        let broken = |change: &dyn Fn(&mut Rows)| {
+            let mut tree = sound.clone();
+            let root = tree.root.place();
+            let mut rows = tree.cells.rows()[root];
+            change(&mut rows);
+            tree.cells.set(root, rows);
+            tree.check().expect_err("the tree is broken")
+        };
+        let last = |rows: &Rows, row: usize| rows[row].to_array()[7].to_bits();
+        let put = |rows: &mut Rows, row: usize, lane: usize, x: f32| rows[row].as_mut_array()[lane] = x;
+        assert!(matches!(broken(&|rows| put(rows, 1, 7, rows[1].to_array()[7].next_down())), TreeError::Box { .. }));
+        let first_again = |rows: &mut Rows| put(rows, 6, 7, f32::from_bits(rows[6].to_array()[6].to_bits()));
+        assert!(matches!(broken(&first_again), TreeError::Box { .. } | TreeError::NotOnce { .. }));
+        let nowhere = |rows: &mut Rows| put(rows, 6, 7, f32::from_bits(last(rows, 6) | 0x00ff_ffff));
+        assert!(matches!(broken(&nowhere), TreeError::Box { .. }));
+        assert!(matches!(broken(&|rows| put(rows, 7, 3, 0.0)), TreeError::Order { octant: 3, .. }));
+        let unused = |rows: &mut Rows| put(rows, 0, 7, f32::INFINITY);
+        assert!(matches!(broken(&unused), TreeError::NotOnce { times: 0, .. }));
+        let mut shallow = sound.clone();
+        shallow.depth = 1;
+        assert!(matches!(shallow.check(), Err(TreeError::Stack { .. })));
+        let mut other = sound.clone();
+        other.order = waves(25).order().clone();
+        assert!(matches!(other.check(), Err(TreeError::Triangle { times: 0, .. })));
     }
 }
