@@ -92,7 +92,8 @@ fn tiles_of_rays(geometry: &Geometry, random: &mut Random) -> Vec<Ray8> {
     let triangles: Vec<_> = geometry.world_triangles().map(|t| t.corners).collect();
     let (spread, apart) = (0.3 * random.unit().powi(4), 0.1 * random.unit().powi(4) * f32::from(random.pick(2) as u8));
     let aim = triangles[random.pick(triangles.len())][random.pick(3)];
-    let eye = if random.pick(4) == 0 { aim } else { aim + random.point([0.5, 3.0, 300.0][random.pick(3)]) };
+    let far = [0.5, 3.0, 300.0][random.pick(3)];
+    let eye = if random.pick(4) == 0 { aim } else { aim + random.point(far) };
     let axis = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, -1.0, 0.0), Vec3::new(0.0, -0.0, 1.0)][random.pick(3)];
     let forth = if random.pick(4) == 0 { axis } else { (aim - eye).normalize_or(axis) };
     (0..1 + random.pick(9))
