@@ -59,7 +59,7 @@ pub enum GeometryError {
         vertex: usize,
     },
     /// More triangles than a 32-bit index can name.
-    #[error("{0} triangles are more than the 2^31 that can be indexed")]
+    #[error("{0} triangles are more than the 2^29 that can be indexed")]
     TooMany(usize),
 }
 
@@ -109,6 +109,10 @@ impl Instance {
 }
 
 impl Geometry {
+    /// Most triangles of all instances together: a tree over them then has fewer than 2³¹ nodes and leaves, which is what a
+    /// word can name beside the bit that tells them apart.
+    pub const MOST_TRIANGLES: usize = 1 << 29;
+
     /// Checks indices, finiteness and counts.
     ///
     /// # Errors
@@ -135,7 +139,7 @@ impl Geometry {
             count = count.saturating_add(mesh.triangles.len());
             starts.push(u32::try_from(count).unwrap_or(u32::MAX));
         }
-        if count >= 1 << 31 {
+        if count > Self::MOST_TRIANGLES {
             return Err(GeometryError::TooMany(count));
         }
         let order = Order { starts, meshes: instances.iter().map(|instance| instance.mesh).collect() };

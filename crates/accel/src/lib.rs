@@ -3,12 +3,12 @@
 //! - [`Geometry`] is the input: meshes and the instances that place them.
 //! - [`Ray8`] and [`Hit8`] carry eight rays and their hits, side by side; [`RayKind`] says how alike the eight are.
 //! - [`Accel`] is the question, answered by backends that find the same hit: [`Brute`] tests every triangle and is the
-//!   oracle, [`Obvhs`] builds a tree with the `obvhs` crate and walks it with eight-wide box and triangle tests. With the
-//!   feature `embree`, `Embree` hands everything to Intel's library of that name.
+//!   oracle, [`Obvhs`] builds a tree, with help of the crate of that name, and walks it eight boxes or triangles at a time. With
+//!   the feature `embree`, `Embree` hands everything to Intel's library of that name.
 //!
-//! [`Intersect`] says how strictly a backend shall test. Robust, Brute and Obvhs share one watertight triangle test ([`triangle`]) and agree bit for bit: a hit counts only inside the
-//! padded slab interval of its own triangle's box, so every ancestor box is entered by construction. Ties go to the
-//! smallest (t, instance, mesh, prim).
+//! [`Intersect`] says how strictly a backend shall test. Robust, Brute and Obvhs share one watertight triangle test ([`triangle`])
+//! and agree bit for bit: a hit counts only inside the padded slab interval of its own triangle's box, so every ancestor box is
+//! entered by construction. Ties go to the smallest (t, instance, mesh, prim).
 //!
 //! ```
 //! use gonio_accel::{Accel, Brute, Geometry, Hit8, Mesh, Ray8, RayKind};

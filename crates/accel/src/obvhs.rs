@@ -1,13 +1,15 @@
-//! The tree backend: built by the `obvhs` crate, walked by our own eight-wide traversal.
+//! The tree backend: eight-wide trees, walked in the way that suits the rays.
 //!
-//! `obvhs` builds a binary tree (PLOC with reinsertion); `obvhs/tree.rs` collapses it into nodes of eight children whose
-//! boxes lie side by side, over blocks of eight triangles side by side. One ray is tested against eight boxes or eight
-//! triangles at a time. So few triangles that a tree does not pay ([`few`]) are kept in a list. The traversal of `obvhs`
-//! itself is not used: it is several times slower and its triangle test leaks.
+//! - [`tree`] is the tree: nodes of eight boxes side by side over blocks of eight triangles side by side, so that a ray, or a whole
+//!   tile of rays, is tested against eight of them at once.
+//! - It is made of a binary tree, from the top down by [`sah`] or by the crate `obvhs` ([`bridge`]), which [`collapse`] makes wide in
+//!   the cheapest way; [`order`] says what a ray that looks for any hit visits first, and [`check`] whether all of it is sound.
+//! - Rays that have nothing in common walk alone, many at a time ([`flight`]); rays of a camera walk as tiles ([`tile`]).
+//!   Those that look for any hit first try the triangles that blocked the last ones ([`occluders`]).
+//! - So few triangles that a tree does not pay are kept in a list ([`few`]).
 //!
-//! **Order.** A ray that looks for its nearest hit visits the nearest child first; one that looks for any hit visits the
-//! largest first, where anything is most likely to be met. Incoherent rays take turns, eight in flight, one step
-//! each: while the memory fetches one's node, the others go on. None of this changes a result.
+//! None of this changes a result: all share the test of [`crate::triangle`], whose hits do not depend on the order of visits. The
+//! traversals of `obvhs` itself are not used: they are several times slower and their triangle test leaks.
 
 mod boxes;
 mod bridge;

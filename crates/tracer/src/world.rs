@@ -140,7 +140,7 @@ impl World {
         let mut uses = vec![0_usize; meshes.len()];
         scene.instances.iter().for_each(|instance| uses[instance.mesh] += 1);
         let of = scene.instances.iter().map(|instance| meshes[instance.mesh].triangles.len()).sum::<usize>();
-        if of >= 1 << 31 {
+        if of > Geometry::MOST_TRIANGLES {
             return Err(refuse(GeometryError::TooMany(of).to_string()));
         }
         world.triangles.reserve_exact(of);

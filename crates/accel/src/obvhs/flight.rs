@@ -3,13 +3,13 @@
 //! A ray is tested against eight boxes or eight triangles at once. What then takes the time is waiting: for nodes that are not
 //! in the cache, and for branches that nobody can predict. So [`FLIGHT`] rays are on their way at once and take turns.
 //! Which node a ray visits next is known a whole round before it does, and is fetched meanwhile; and of all rays those at nodes
-//! go first and those at leaves after, so that the kind of a visit is not a branch. When a ray is done the next of the slice takes
+//! go first and those at blocks after, so that the kind of a visit is not a branch. When a ray is done the next of the slice takes
 //! its place, so that all places stay taken to the end.
 //!
 //! A node is left without a branch: the children that the ray enters are moved together by a permutation, farthest first, and
 //! stored on the ray's stack all at once. Their order is that of the ray's octant, computed when the tree was built (compare
 //! Ylitie, Karras & Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs"). For rays that look
-//! for any hit it is the order of area: the largest box first, where anything is most likely to be met.
+//! for any hit it is the order in which one is likeliest to be found ([`super::order`]).
 
 use super::tree::{Cell, Child, View};
 use crate::ray::{NO_HIT, Ray8};
@@ -25,7 +25,7 @@ pub(super) trait Quest {
     const ANY: bool;
     /// Looks at eight rays before they go; returns those that need to.
     fn begin<const FAST: bool>(&mut self, packet: usize, ray: &Ray8, beam: &Beam, live: Mask8) -> Mask8;
-    /// Looks at the triangles of a leaf that the ray meets; true if the ray need not go on.
+    /// Looks at those triangles of a block that the ray meets; true if the ray need not go on.
     fn meet(&mut self, walk: &mut Walk, crossing: &Crossing, block: Cell<'_>) -> bool;
     /// A ray is done: `meet` returned true, or there was no more to visit.
     fn done(&mut self, walk: &Walk);

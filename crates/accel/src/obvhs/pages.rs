@@ -1,6 +1,6 @@
 //! Where the cells of a tree lie: in huge pages, if the system has them.
 //!
-//! A ray's next cell may be anywhere. With pages of 4 KiB a tree of a million triangles needs twenty thousand of them, of which the
+//! A ray's next cell may be anywhere. With pages of 4 KiB a tree of a million triangles needs nearly twenty thousand, of which the
 //! processor remembers two thousand, and looking up one more costs as much as the cell. With pages of 2 MiB it needs forty.
 
 use memmap2::MmapMut;

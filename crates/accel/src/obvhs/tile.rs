@@ -4,8 +4,8 @@
 //! inverse directions, all of one sign per axis, in another, then no ray enters a child before the least, nor leaves it after the
 //! greatest of the products at their ends (compare Boulos, Wald & Shirley 2006, "Geometric and Arithmetic Culling Methods for
 //! Entire Ray Packets"). A node so costs 32 rays hardly more than one. Only at a block of triangles each packet is tested
-//! against the block's own box. Where many of its eight rays enter, they are tested against one triangle after the other;
-//! where few do, each ray against all eight triangles at once.
+//! against the block's own box, after the tile was tested against the boxes of the triangles. Where many of a packet's eight rays
+//! enter, they are tested against one triangle after the other; where few do, each ray against all eight triangles at once.
 //!
 //! Rays that do not share their octant go on alone ([`super::flight`]). Every test of a triangle is the same, so results are too.
 
@@ -20,8 +20,11 @@ use gonio_kernel::{F32x8, Mask, Mask8, Real, U32x8, Vec3};
 /// Most packets of a tile.
 const PACKETS: usize = 4;
 
-/// The place of no triangle: larger than any other as a signed number.
+/// The place of no triangle: larger than any other, and not negative where lanes are compared.
 const NOWHERE: u32 = u32::MAX >> 1;
+
+/// Most cells of a tree that a tile can walk: a cell's place and a slot share a word.
+const MOST_CELLS: usize = 1 << 29;
 
 /// Eight rays of a tile and the best hits of theirs so far.
 #[derive(Clone, Copy)]
@@ -154,11 +157,10 @@ impl Interval {
         let pads = [most(|p| p.beam.pad().x), most(|p| p.beam.pad().y), most(|p| p.beam.pad().z)];
         // The origin that is farthest along for near planes, the other one for far planes; twice the padding of a ray, because
         // the offsets here are rounded like those of a ray, but are not the same.
-        let offsets = |axis: usize, origin: f32, pad: f32| {
-            inverses[axis].map(|inverse| F32x8::splat(2.0 * pad * pads[axis] - origin * inverse))
-        };
-        let enter = [0, 1, 2].map(|axis| offsets(axis, origins[axis][1 - down[axis]], -1.0));
-        let leave = [0, 1, 2].map(|axis| offsets(axis, origins[axis][down[axis]], 1.0));
+        let offsets =
+            |axis: usize, origin: f32, pad: f32| inverses[axis].map(|inverse| F32x8::splat(pad - origin * inverse));
+        let enter = [0, 1, 2].map(|axis| offsets(axis, origins[axis][1 - down[axis]], -2.0 * pads[axis]));
+        let leave = [0, 1, 2].map(|axis| offsets(axis, origins[axis][down[axis]], 2.0 * pads[axis]));
         let [x, y, z] = down;
         Some(Self {
             near: [x, 2 + y, 4 + z],
@@ -211,7 +213,8 @@ impl View<'_> {
         hits: &mut [Hit8],
         mut alone: impl FnMut(&[Ray8], &mut [Hit8]),
     ) {
-        let Some(first) = rays.first().filter(|_| !self.tree.root.is_leaf()) else { return alone(rays, hits) };
+        let fits = !self.tree.root.is_leaf() && self.tree.cell_count() <= MOST_CELLS;
+        let Some(first) = rays.first().filter(|_| fits) else { return alone(rays, hits) };
         let size = self.tree.stack_size();
         let mut stack = Stack { children: vec![0; size], nears: vec![0.0; size] };
         let mut packets = [Packet::new::<FAST>(first, self.tree); PACKETS];
