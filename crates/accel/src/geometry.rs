@@ -78,6 +78,8 @@ pub(crate) struct Order {
     starts: Vec<u32>,
     /// The mesh of each instance.
     meshes: Vec<u32>,
+    /// Whether it has a transform.
+    is_placed: Vec<bool>,
 }
 
 impl Order {
@@ -142,7 +144,11 @@ impl Geometry {
         if count > Self::MOST_TRIANGLES {
             return Err(GeometryError::TooMany(count));
         }
-        let order = Order { starts, meshes: instances.iter().map(|instance| instance.mesh).collect() };
+        let order = Order {
+            starts,
+            meshes: instances.iter().map(|instance| instance.mesh).collect(),
+            is_placed: instances.iter().map(|instance| instance.transform != Instance::IDENTITY).collect(),
+        };
         Ok(Self { meshes, instances, order })
     }
 
@@ -177,8 +183,14 @@ impl Geometry {
     pub fn world_triangle(&self, index: u32) -> WorldTriangle {
         let id = self.order.id(index);
         let (instance, mesh) = (&self.instances[id.instance as usize], &self.meshes[id.mesh as usize]);
-        let corner = |v: u32| instance.to_world(mesh.positions[v as usize]).into();
-        WorldTriangle { corners: mesh.triangles[id.prim as usize].map(corner), id }
+        let is_placed = self.order.is_placed[id.instance as usize];
+        let corner = |v: u32| {
+            let p = mesh.positions[v as usize];
+            // Without a transform that is what `to_world` comes to: −0 becomes 0.
+            Vec3::from(if is_placed { instance.to_world(p) } else { [p[0] + 0.0, p[1] + 0.0, p[2] + 0.0] })
+        };
+        let [a, b, c] = mesh.triangles[id.prim as usize];
+        WorldTriangle { corners: [corner(a), corner(b), corner(c)], id }
     }
 
     /// All triangles of all instances in the world, in the order (instance, prim).

@@ -167,21 +167,16 @@ impl Bin {
 fn cut_many(refs: &mut [Ref]) -> (usize, [Box3; 2]) {
     let centers = centers_of(refs);
     let [lo, hi] = [centers.lo, centers.hi];
-    // A scale that maps the largest center into the last bin.
-    let scale = std::array::from_fn::<f32, 3, _>(|a| {
-        let size = hi[a] - lo[a];
-        if size > 0.0 { BINS as f32 * 0.9999 / size } else { 0.0 }
-    });
-    let place = |r: &Ref| {
-        let c = r.bounds().center2();
-        [0, 1, 2].map(|a| (((c[a] - lo[a]) * scale[a]) as usize).min(BINS - 1))
-    };
+    // A little less, so that the largest centre too is in the last bin.
+    let scale = |size: f32| if size > 0.0 { BINS as f32 * 0.9999 / size } else { 0.0 };
+    let scale = [scale(hi.x - lo.x), scale(hi.y - lo.y), scale(hi.z - lo.z)];
+    let place = |center: Vec4, axis: usize| (((center[axis] - lo[axis]) * scale[axis]) as usize).min(BINS - 1);
     let mut bins = [[Bin::EMPTY; BINS]; 3];
     for r in &*refs {
-        let at = place(r);
-        for axis in 0..3 {
-            let bin = &mut bins[axis][at[axis]];
-            bin.bounds = bin.bounds.union(r.bounds());
+        let (bounds, center) = (r.bounds(), r.bounds().center2());
+        for (axis, bins) in bins.iter_mut().enumerate() {
+            let bin = &mut bins[place(center, axis)];
+            bin.bounds = bin.bounds.union(bounds);
             bin.count += 1;
         }
     }
@@ -213,7 +208,7 @@ fn cut_many(refs: &mut [Ref]) -> (usize, [Box3; 2]) {
         let middle = refs.len() / 2;
         return (middle, sides(refs, middle));
     }
-    let middle = partition(refs, |r| place(r)[axis] < cut);
+    let middle = partition(refs, |r| place(r.bounds().center2(), axis) < cut);
     let around = |bins: &[Bin]| bins.iter().fold(Box3::EMPTY, |all, bin| all.union(bin.bounds));
     (middle, [around(&bins[axis][..cut]), around(&bins[axis][cut..])])
 }

@@ -12,6 +12,7 @@ use super::{ObvhsPreset, bridge, order, sah};
 use crate::geometry::{Geometry, Order};
 use glam::Vec4;
 use gonio_kernel::{F32x8, Real, U32x8, Vec3};
+use wide::f32x8;
 
 /// How many children a node has, and how many triangles a block.
 pub(super) const WIDTH: usize = F32x8::LANES;
@@ -192,10 +193,20 @@ impl Tree {
 
     /// Appends a block of triangles.
     fn block(&mut self, geometry: &Geometry, triangles: &[u32]) -> Child {
-        let index: [u32; WIDTH] = std::array::from_fn(|i| triangles.get(i).copied().unwrap_or(triangles[0]));
-        let corners = index.map(|i| geometry.world_triangle(i).corners);
-        let [a, b, c] = [0, 1, 2].map(|c| Vec3::from_lanes(|l| corners[l][c]));
-        self.cells.push([a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, U32x8::new(index).as_real()].map(|row| row.0));
+        let (mut rows, mut index) = ([[0.0; WIDTH]; 9], [triangles[0]; WIDTH]);
+        for (lane, &triangle) in triangles.iter().enumerate() {
+            let [a, b, c] = geometry.world_triangle(triangle).corners;
+            for (row, x) in rows.iter_mut().zip([a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z]) {
+                row[lane] = x;
+            }
+            index[lane] = triangle;
+        }
+        for row in &mut rows {
+            let first = row[0];
+            row[triangles.len()..].fill(first);
+        }
+        let [ax, ay, az, bx, by, bz, cx, cy, cz] = rows.map(f32x8::new);
+        self.cells.push([ax, ay, az, bx, by, bz, cx, cy, cz, U32x8::new(index).as_real().0]);
         Child((self.cells.rows().len() - 1) as u32 | LEAF)
     }
 }
