@@ -7,7 +7,9 @@
 //! against the block's own box, after the tile was tested against the boxes of the triangles. Where many of a packet's eight rays
 //! enter, they are tested against one triangle after the other; where few do, each ray against all eight triangles at once.
 //!
-//! Rays that do not share their octant go on alone ([`super::flight`]). Every test of a triangle is the same, so results are too.
+//! Rays that do not share their octant go on alone ([`super::flight`]), and so do the rays of a tile that finds itself
+//! at many blocks which few of them enter: far away, or in a small picture, neighbours have nothing in common. After such a
+//! tile ever fewer are tried. Every test of a triangle is the same, so results are too.
 
 use super::flight::{TOGETHER, crossing, sound, spread, test};
 use super::for_each_lane;
@@ -22,6 +24,12 @@ const PACKETS: usize = 4;
 
 /// The place of no triangle: larger than any other, and not negative where lanes are compared.
 const NOWHERE: u32 = u32::MAX >> 1;
+
+/// A tile does not pay if of so many blocks less than every second was entered by one of its rays.
+const TRIAL: u32 = 32;
+
+/// The most tiles that go as single rays after one that did not pay.
+const LONGEST: u32 = 64;
 
 /// Most cells of a tree that a tile can walk: a cell's place and a slot share a word.
 const MOST_CELLS: usize = 1 << 29;
@@ -218,33 +226,45 @@ impl View<'_> {
         let size = self.tree.stack_size();
         let mut stack = Stack { children: vec![0; size], nears: vec![0.0; size] };
         let mut packets = [Packet::new::<FAST>(first, self.tree); PACKETS];
+        let (mut pause, mut passed) = (0, 0);
         for (rays, hits) in rays.chunks(PACKETS).zip(hits.chunks_mut(PACKETS)) {
+            if passed < pause {
+                passed += 1;
+                alone(rays, hits);
+                continue;
+            }
             let packets = &mut packets[..rays.len()];
             for (packet, ray) in packets.iter_mut().zip(rays) {
                 *packet = Packet::new::<FAST>(ray, self.tree);
             }
             // As one tile; if they have not enough in common, each packet for itself; if even that has not, each ray.
             if let Some(interval) = Interval::of(packets) {
-                self.visit_tile::<FAST>(packets, &interval, &mut stack);
-                for (packet, hit) in packets.iter().zip(hits) {
-                    *hit = packet.hit(&self.tree.order);
+                if self.visit_tile::<FAST>(packets, &interval, &mut stack) {
+                    pause = 0;
+                    for (packet, hit) in packets.iter().zip(hits) {
+                        *hit = packet.hit(&self.tree.order);
+                    }
+                } else {
+                    (passed, pause) = (0, (2 * pause + 1).min(LONGEST));
+                    alone(rays, hits);
                 }
                 continue;
             }
             for ((packet, ray), hit) in packets.iter_mut().zip(rays).zip(hits) {
                 let packet = std::slice::from_mut(packet);
                 match Interval::of(packet) {
-                    Some(interval) => {
-                        self.visit_tile::<FAST>(packet, &interval, &mut stack);
+                    Some(interval) if self.visit_tile::<FAST>(packet, &interval, &mut stack) => {
                         *hit = packet[0].hit(&self.tree.order);
                     }
-                    None => alone(std::slice::from_ref(ray), std::slice::from_mut(hit)),
+                    _ => alone(std::slice::from_ref(ray), std::slice::from_mut(hit)),
                 }
             }
         }
     }
 
-    fn visit_tile<const FAST: bool>(&self, packets: &mut [Packet], interval: &Interval, stack: &mut Stack) {
+    /// Finds the nearest hits of a tile; false if it gave up, because ray by ray is cheaper.
+    fn visit_tile<const FAST: bool>(&self, packets: &mut [Packet], interval: &Interval, stack: &mut Stack) -> bool {
+        let (mut blocks, mut rays) = (0, 0);
         let last = |packets: &[Packet]| extreme(packets, |p| p.until, f32::NEG_INFINITY, F32x8::max);
         let mut until = last(packets);
         let mut top = self.enter_tile(interval, self.tree.root, until, stack, 0);
@@ -269,10 +289,15 @@ impl View<'_> {
             let plane = |row: usize| F32x8::splat(parent.plane(row).lane(slot));
             let [near, far] = [interval.near, interval.far].map(|[x, y, z]| Vec3::new(plane(x), plane(y), plane(z)));
             let mut met = false;
+            blocks += 1;
+            if blocks >= TRIAL && 2 * rays < blocks {
+                return false;
+            }
             for packet in &mut *packets {
                 let [enter, leave] = packet.beam.slab(near, far);
                 let entered = enter.max(packet.from).le(leave.min(packet.until));
                 if entered.any() {
+                    rays += entered.to_bits().count_ones();
                     met |= packet.meet::<FAST>(entered, block, &corners, candidates);
                 }
             }
@@ -280,6 +305,7 @@ impl View<'_> {
                 until = last(packets);
             }
         }
+        true
     }
 
     /// Pushes the children of a node that some ray may enter; returns the new top of the stack.
