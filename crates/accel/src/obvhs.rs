@@ -21,6 +21,7 @@ mod occluders;
 mod order;
 mod pages;
 mod sah;
+mod stack;
 mod tile;
 mod tree;
 

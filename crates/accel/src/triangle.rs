@@ -110,8 +110,7 @@ impl Beam {
     /// Lane `lane` of these rays, in all eight lanes.
     #[inline(always)]
     pub fn splat_lane(&self, lane: usize) -> Self {
-        let one = |x: F32x8| F32x8::splat(x.lane(lane));
-        let each = |v: Vec3<F32x8>| Vec3::new(one(v.x), one(v.y), one(v.z));
+        let each = |v: Vec3<F32x8>| v.splat_lane(lane);
         Self {
             origin: each(self.origin),
             dir: each(self.dir),
@@ -119,7 +118,7 @@ impl Beam {
             inverse: each(self.inverse),
             enter: each(self.enter),
             leave: each(self.leave),
-            reach: one(self.reach),
+            reach: self.reach.splat_lane(lane),
         }
     }
 
@@ -192,8 +191,8 @@ impl Crossing {
     /// What one lane found, in all eight.
     #[inline(always)]
     pub fn splat_lane(&self, lane: usize) -> Self {
-        let one = |x: F32x8| F32x8::splat(x.lane(lane));
-        Self { mask: Mask8::splat(self.mask.lane(lane)), t: one(self.t), edges: self.edges.map(one) }
+        let edges = self.edges.map(|e| e.splat_lane(lane));
+        Self { mask: Mask8::splat(self.mask.lane(lane)), t: self.t.splat_lane(lane), edges }
     }
 
     /// Barycentric weights of the second and third vertex; the first has 1 − b1 − b2.

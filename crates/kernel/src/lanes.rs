@@ -59,6 +59,11 @@ impl F32x8 {
     pub fn set_lane(&mut self, lane: usize, x: f32) {
         self.0.as_mut_array()[lane & 7] = x;
     }
+    /// Lane `lane` modulo 8, in every lane.
+    #[inline(always)]
+    pub fn splat_lane(&self, lane: usize) -> Self {
+        Self::splat(self.lane(lane))
+    }
     /// The lanes in order.
     #[inline(always)]
     pub fn to_array(self) -> [f32; 8] {
@@ -175,6 +180,11 @@ impl Vec3<F32x8> {
     #[inline(always)]
     pub fn broadcast(v: Vec3<f32>) -> Self {
         Self::new(F32x8::splat(v.x), F32x8::splat(v.y), F32x8::splat(v.z))
+    }
+    /// Lane `lane` modulo 8, in every lane.
+    #[inline(always)]
+    pub fn splat_lane(&self, lane: usize) -> Self {
+        Self::new(self.x.splat_lane(lane), self.y.splat_lane(lane), self.z.splat_lane(lane))
     }
     /// Lane *i* is `f(i)`; `f` is asked once per component and lane.
     #[inline(always)]

@@ -1,6 +1,7 @@
 //! Whether a tree is one: everything that a traversal takes for granted.
 
 use super::boxes::Box3;
+use super::stack::spread;
 use super::tree::{Child, Tree, WIDTH};
 use gonio_kernel::Vec3;
 use thiserror::Error;
@@ -60,7 +61,9 @@ impl Tree {
         while let Some((child, waits, parent)) = work.pop() {
             let place = child.place();
             let beyond = |(cell, slot, _): (usize, usize, Box3)| TreeError::Box { cell, slot };
-            let Some(times) = cells.get_mut(place) else { return parent.map_or(Ok(()), |p| Err(beyond(p))) };
+            let Some(times) = cells.get_mut(place) else {
+                return Err(parent.map_or(TreeError::NotOnce { cell: place, times: 0 }, beyond));
+            };
             *times += 1;
             if *times > 1 {
                 return Err(TreeError::NotOnce { cell: place, times: *times });
@@ -104,8 +107,8 @@ impl Tree {
 
     fn check_orders(&self, node: Child) -> Result<(), TreeError> {
         for octant in 0..8 {
-            let packed = self.cell(node).order(octant);
-            let slots = (0..WIDTH).fold(0, |all, place| all | 1 << (packed >> (3 * place) & 7));
+            let order = spread(self.cell(node).order(octant)).to_array();
+            let slots = order.into_iter().fold(0, |all, slot| all | 1 << (slot & 7));
             if slots != 0xff {
                 return Err(TreeError::Order { cell: node.place(), octant });
             }

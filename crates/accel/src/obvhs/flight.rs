@@ -6,15 +6,15 @@
 //! go first and those at blocks after, so that the kind of a visit is not a branch. When a ray is done the next of the slice takes
 //! its place, so that all places stay taken to the end.
 //!
-//! A node is left without a branch: the children that the ray enters are moved together by a permutation, farthest first, and
-//! stored on the ray's stack all at once. Their order is that of the ray's octant, computed when the tree was built (compare
+//! A node is left without a branch ([`super::stack`]): the children that the ray enters are stored all at once, farthest first. Their order is that of the ray's octant, computed when the tree was built (compare
 //! Ylitie, Karras & Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs"). For rays that look
 //! for any hit it is the order in which one is likeliest to be found ([`super::order`]).
 
-use super::tree::{Cell, Child, View};
+use super::stack::Stack;
+use super::tree::{Cell, Child, Facing, Slots, View};
 use crate::ray::{NO_HIT, Ray8};
 use crate::triangle::{Beam, Crossing, intersect, intersect_fast};
-use gonio_kernel::{F32x8, Mask, Mask8, Real, U32x8, Vec3};
+use gonio_kernel::{F32x8, Mask, Mask8, Real, Vec3};
 
 /// How many rays are on their way at once.
 const FLIGHT: usize = 16;
@@ -36,11 +36,7 @@ pub(super) struct Walk {
     /// Its number: packet · 8 + lane.
     pub(super) ray: usize,
     beam: Beam,
-    /// Which rows of a node are the near planes,
-    near: [usize; 3],
-    /// and which the far ones.
-    far: [usize; 3],
-    octant: usize,
+    facing: Facing,
     t_min: f32,
     slack: f32,
     /// Where it ends: the best hit so far, or t_max.
@@ -74,23 +70,6 @@ impl Walk {
     }
 }
 
-/// Subtrees still to be visited by each ray, and where it enters them.
-struct Stacks {
-    children: Vec<u32>,
-    nears: Vec<f32>,
-}
-
-impl Stacks {
-    /// Stores eight of which some count.
-    #[inline(always)]
-    fn store(&mut self, top: usize, children: U32x8, nears: Option<F32x8>) {
-        self.children[top..top + 8].copy_from_slice(&children.to_array());
-        if let Some(nears) = nears {
-            self.nears[top..top + 8].copy_from_slice(&nears.to_array());
-        }
-    }
-}
-
 /// The rays of a slice, one after the other.
 struct Queue<'a> {
     rays: &'a [Ray8],
@@ -108,7 +87,7 @@ impl View<'_> {
     /// Sends all live rays through the tree.
     pub(super) fn fly<const FAST: bool, Q: Quest>(&self, rays: &[Ray8], quest: &mut Q) {
         let size = self.tree.stack_size();
-        let mut stacks = Stacks { children: vec![0; FLIGHT * size], nears: vec![0.0; FLIGHT * size] };
+        let mut stacks = Stack::with_room(FLIGHT * size);
         let Some(first) = rays.first() else { return };
         let beam = Beam::new(first.origin, first.dir, self.tree.lo, self.tree.hi);
         let mut queue = Queue { rays, begun: 0, left: 0, beam, down: [0; 3] };
@@ -156,9 +135,7 @@ impl View<'_> {
         let lane = queue.left.trailing_zeros() as usize;
         queue.left &= queue.left - 1;
         let packet = queue.begun - 1;
-        let [x, y, z] = queue.down.map(|down| (down >> lane & 1) as usize);
-        (walk.near, walk.far) = ([x, 2 + y, 4 + z], [x ^ 1, 2 + (y ^ 1), 4 + (z ^ 1)]);
-        walk.octant = x | y << 1 | z << 2;
+        walk.facing = Facing::of(queue.down.map(|down| (down >> lane & 1) as usize));
         walk.ray = packet * F32x8::LANES + lane;
         walk.beam = queue.beam.splat_lane(lane);
         (walk.t_min, walk.t_best) = (queue.rays[packet].t_min.lane(lane), queue.rays[packet].t_max.lane(lane));
@@ -188,7 +165,7 @@ impl View<'_> {
 
     /// Takes the next subtree from a ray's stack and has it fetched.
     #[inline(always)]
-    fn pop<Q: Quest>(&self, bit: u32, walk: &mut Walk, stacks: &Stacks, next: &mut Next) {
+    fn pop<Q: Quest>(&self, bit: u32, walk: &mut Walk, stacks: &Stack, next: &mut Next) {
         let is_empty = walk.top == walk.base;
         let top = walk.top - usize::from(!is_empty);
         let child = Child(stacks.children[top]);
@@ -248,9 +225,7 @@ impl Walk {
         Self {
             ray: 0,
             beam,
-            near: [0; 3],
-            far: [0; 3],
-            octant: 0,
+            facing: Facing::default(),
             t_min: 0.0,
             t_best: 0.0,
             slack: 0.0,
@@ -266,49 +241,20 @@ impl Walk {
 
     /// Pushes the children of a node whose boxes the ray enters.
     #[inline(always)]
-    fn visit<Q: Quest>(&mut self, node: Cell<'_>, stacks: &mut Stacks) {
-        let [near, far] = [self.near, self.far].map(|[x, y, z]| Vec3::new(node.plane(x), node.plane(y), node.plane(z)));
+    fn visit<Q: Quest>(&mut self, node: Cell<'_>, stacks: &mut Stack) {
+        let [near, far] = self.facing.planes(node);
         let [enter, leave] = self.beam.slab(near, far);
         let entered = enter.max(F32x8::splat(self.from)).le(leave.min(F32x8::splat(self.until)));
-        let children = node.children();
-        if Q::ANY {
-            let bits = entered.to_bits();
-            let order = spread(TOGETHER[bits as usize & 0xff]);
-            stacks.store(self.top, children.permute(order), None);
-            self.top += bits.count_ones() as usize;
+        let (slots, nears) = if Q::ANY {
+            (Slots::as_they_are(entered), None)
         } else {
-            let order = spread(node.order(self.octant));
-            let bits = entered.permute(order).to_bits();
-            let order = order.permute(spread(TOGETHER[bits as usize & 0xff]));
-            stacks.store(self.top, children.permute(order), Some(enter.to_bits().permute(order).as_real()));
-            self.top += bits.count_ones() as usize;
-        }
+            let slots = node.in_order(&self.facing, entered);
+            (slots, Some(enter.to_bits().permute(slots.which).as_real()))
+        };
+        stacks.store(self.top, node.children().permute(slots.which), nears);
+        self.top += slots.count;
     }
 }
-
-/// Eight numbers below eight, of three bits each, one per lane.
-#[inline(always)]
-pub(super) fn spread(packed: u32) -> U32x8 {
-    U32x8::splat(packed).shr_each(U32x8::new([0, 3, 6, 9, 12, 15, 18, 21]))
-}
-
-/// For each set of lanes its members, the first lane first, packed for [`spread`]; then zeros.
-pub(super) const TOGETHER: [u32; 256] = {
-    let mut table = [0; 256];
-    let mut set = 0;
-    while set < 256 {
-        let (mut lane, mut count) = (0, 0);
-        while lane < 8 {
-            if set >> lane & 1 != 0 {
-                table[set] |= (lane as u32) << (3 * count);
-                count += 1;
-            }
-            lane += 1;
-        }
-        set += 1;
-    }
-    table
-};
 
 /// The test that a traversal is compiled with.
 #[inline(always)]

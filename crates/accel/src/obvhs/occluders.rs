@@ -3,7 +3,8 @@
 //! Neighbours look for a way to the same light, or out of the same room, and a wall is two triangles. So rays that look for any
 //! hit are first tested, eight at once, against the [`MOST`] triangles that were of use lately, which costs a ray less than one visit
 //! of a node (compare Haines & Greenberg 1986, "The Light Buffer: A Shadow-Testing Accelerator"). One that blocks a ray again moves
-//! ahead; a new one takes the last place. Where none is of use, ever fewer packets are tested. The answer is that of the tree, because the test is.
+//! ahead; a new one takes the last place. Where none is of use, ever fewer packets are tested. The answer is that of the tree,
+//! because the test is.
 
 use super::flight::crossing;
 use super::tree::Cell;
@@ -54,8 +55,7 @@ impl Occluders {
     /// Remembers a triangle of a block.
     #[inline(always)]
     pub(super) fn add(&mut self, block: Cell<'_>, lane: usize) {
-        let one = |x: F32x8| F32x8::splat(x.lane(lane));
-        let corners = block.corners().map(|c| Vec3::new(one(c.x), one(c.y), one(c.z)));
+        let corners = block.corners().map(|c| c.splat_lane(lane));
         if self.corners.len() < MOST {
             self.order[self.corners.len()] = self.corners.len() as u8;
             self.corners.push(corners);

@@ -32,7 +32,7 @@ pub(super) fn settle(tree: &mut Tree, nodes: &[Child], odds: &mut Vec<Odds>) {
         slots.sort_by(|a, b| worth(&a.2).total_cmp(&worth(&b.2)));
         odds[node.0 as usize] = of_node(&slots);
         let children: Vec<(Box3, Child)> = slots.iter().map(|s| (s.0, s.1)).collect();
-        tree.set_node(node, &children);
+        tree.settle_node(node, &children);
     }
 }
 

@@ -30,8 +30,9 @@ impl Pages {
     }
 
     pub(super) fn push(&mut self, rows: Rows) {
-        if let Self::Heap(all) = self {
-            all.push(rows);
+        match self {
+            Self::Heap(all) => all.push(rows),
+            Self::Huge(_) => unreachable!("a tree that has settled does not grow"),
         }
     }
 

@@ -11,9 +11,10 @@
 //! at many blocks which few of them enter: far away, or in a small picture, neighbours have nothing in common. After such a
 //! tile ever fewer are tried. Every test of a triangle is the same, so results are too.
 
-use super::flight::{TOGETHER, crossing, sound, spread, test};
+use super::flight::{crossing, sound, test};
 use super::for_each_lane;
-use super::tree::{Cell, Child, Tree, View};
+use super::stack::Stack;
+use super::tree::{Cell, Child, Facing, Tree, View};
 use crate::geometry::{Order, TriangleId};
 use crate::ray::{Hit8, Ray8};
 use crate::triangle::{Beam, Crossing, barycentric};
@@ -29,7 +30,7 @@ const NOWHERE: u32 = u32::MAX >> 1;
 const TRIAL: u32 = 32;
 
 /// The most tiles that go as single rays after one that did not pay.
-const LONGEST: u32 = 64;
+const LONGEST: usize = 64;
 
 /// Most cells of a tree that a tile can walk: a cell's place and a slot share a word.
 const MOST_CELLS: usize = 1 << 29;
@@ -105,10 +106,9 @@ impl Packet {
 
 /// The intervals of a tile: what the products with a plane's coordinate are taken from, for both ends.
 struct Interval {
-    /// Rows of a node.
-    near: [usize; 3],
-    far: [usize; 3],
-    octant: usize,
+    facing: Facing,
+    /// For each axis 1 if rays point down it.
+    down: [usize; 3],
     /// Both ends of the inverse directions, along each axis.
     inverse: [[F32x8; 2]; 3],
     /// What is added for near planes at either end,
@@ -130,8 +130,8 @@ fn extreme(packets: &[Packet], pick: impl Fn(&Packet) -> F32x8, start: f32, f: f
         .lane(0)
 }
 
-/// The octant that all live rays share.
-fn octant_of(packets: &[Packet]) -> Option<usize> {
+/// For each axis 1 if all live rays point down it, 0 if all point up; `None` if some do and some do not.
+fn down_of(packets: &[Packet]) -> Option<[usize; 3]> {
     let (mut some, mut every) = ([0; 3], [true; 3]);
     for packet in packets {
         let live = packet.live.to_bits();
@@ -140,18 +140,16 @@ fn octant_of(packets: &[Packet]) -> Option<usize> {
             every[axis] &= down & live == live;
         }
     }
-    let shared = |axis: usize| some[axis] == 0 || every[axis];
-    let bit = |axis: usize| usize::from(some[axis] != 0) << axis;
-    (shared(0) && shared(1) && shared(2)).then_some(bit(0) | bit(1) | bit(2))
+    let shared = (0..3).all(|axis| some[axis] == 0 || every[axis]);
+    shared.then(|| some.map(|lanes| usize::from(lanes != 0)))
 }
 
 impl Interval {
     /// The intervals of packets whose rays share an octant.
     fn of(packets: &[Packet]) -> Option<Self> {
-        let octant = octant_of(packets)?;
+        let down = down_of(packets)?;
         let least = |pick: fn(&Packet) -> F32x8| extreme(packets, pick, f32::INFINITY, F32x8::min);
         let most = |pick: fn(&Packet) -> F32x8| extreme(packets, pick, f32::NEG_INFINITY, F32x8::max);
-        let down = [octant & 1, octant >> 1 & 1, octant >> 2];
         let origins = [
             [least(|p| p.beam.origin().x), most(|p| p.beam.origin().x)],
             [least(|p| p.beam.origin().y), most(|p| p.beam.origin().y)],
@@ -169,11 +167,9 @@ impl Interval {
             |axis: usize, origin: f32, pad: f32| inverses[axis].map(|inverse| F32x8::splat(pad - origin * inverse));
         let enter = [0, 1, 2].map(|axis| offsets(axis, origins[axis][1 - down[axis]], -2.0 * pads[axis]));
         let leave = [0, 1, 2].map(|axis| offsets(axis, origins[axis][down[axis]], 2.0 * pads[axis]));
-        let [x, y, z] = down;
         Some(Self {
-            near: [x, 2 + y, 4 + z],
-            far: [x ^ 1, 2 + (y ^ 1), 4 + (z ^ 1)],
-            octant,
+            facing: Facing::of(down),
+            down,
             inverse: inverses.map(|ends| ends.map(F32x8::splat)),
             enter,
             leave,
@@ -183,8 +179,9 @@ impl Interval {
 
     /// Where the first ray may enter each of eight boxes, and where the last may leave it, given their near and far planes.
     #[inline(always)]
-    fn slab(&self, near: [F32x8; 3], far: [F32x8; 3]) -> [F32x8; 2] {
-        let at = |planes: [F32x8; 3], offsets: &[[F32x8; 2]; 3], pick: fn(F32x8, F32x8) -> F32x8| {
+    fn slab(&self, near: Vec3<F32x8>, far: Vec3<F32x8>) -> [F32x8; 2] {
+        let at = |planes: Vec3<F32x8>, offsets: &[[F32x8; 2]; 3], pick: fn(F32x8, F32x8) -> F32x8| {
+            let planes = [planes.x, planes.y, planes.z];
             [0, 1, 2].map(|axis| {
                 let (plane, [a, b]) = (planes[axis], self.inverse[axis]);
                 pick(plane.mul_add(a, offsets[axis][0]), plane.mul_add(b, offsets[axis][1]))
@@ -201,16 +198,11 @@ impl Interval {
         let [a, b, c] = *corners;
         let ends = |a: F32x8, b: F32x8, c: F32x8| [a.min(b).min(c), a.max(b).max(c)];
         let ends = [ends(a.x, b.x, c.x), ends(a.y, b.y, c.y), ends(a.z, b.z, c.z)];
-        let side = |far: usize| [0, 1, 2].map(|axis| ends[axis][(self.octant >> axis & 1) ^ far]);
+        let [x, y, z] = self.down;
+        let side = |far: usize| Vec3::new(ends[0][x ^ far], ends[1][y ^ far], ends[2][z ^ far]);
         let [enter, leave] = self.slab(side(0), side(1));
         enter.max(self.from).le(leave.min(F32x8::splat(until))).to_bits()
     }
-}
-
-/// Subtrees still to be visited by a tile: children as the places of their nodes · 8 + slot, and where the tile may enter them.
-struct Stack {
-    children: Vec<u32>,
-    nears: Vec<f32>,
 }
 
 impl View<'_> {
@@ -223,40 +215,42 @@ impl View<'_> {
     ) {
         let fits = !self.tree.root.is_leaf() && self.tree.cell_count() <= MOST_CELLS;
         let Some(first) = rays.first().filter(|_| fits) else { return alone(rays, hits) };
-        let size = self.tree.stack_size();
-        let mut stack = Stack { children: vec![0; size], nears: vec![0.0; size] };
+        let mut stack = Stack::with_room(self.tree.stack_size());
         let mut packets = [Packet::new::<FAST>(first, self.tree); PACKETS];
-        let (mut pause, mut passed) = (0, 0);
-        for (rays, hits) in rays.chunks(PACKETS).zip(hits.chunks_mut(PACKETS)) {
-            if passed < pause {
-                passed += 1;
-                alone(rays, hits);
-                continue;
-            }
-            let packets = &mut packets[..rays.len()];
-            for (packet, ray) in packets.iter_mut().zip(rays) {
+        // How many tiles to spare after the next that does not pay, and how many packets are done.
+        let (mut pause, mut done) = (1, 0);
+        while done < rays.len() {
+            let end = (done + PACKETS).min(rays.len());
+            let packets = &mut packets[..end - done];
+            for (packet, ray) in packets.iter_mut().zip(&rays[done..end]) {
                 *packet = Packet::new::<FAST>(ray, self.tree);
             }
             // As one tile; if they have not enough in common, each packet for itself; if even that has not, each ray.
-            if let Some(interval) = Interval::of(packets) {
-                if self.visit_tile::<FAST>(packets, &interval, &mut stack) {
-                    pause = 0;
-                    for (packet, hit) in packets.iter().zip(hits) {
+            match Interval::of(packets) {
+                Some(interval) if self.visit_tile::<FAST>(packets, &interval, &mut stack) => {
+                    pause = 1;
+                    for (packet, hit) in packets.iter().zip(&mut hits[done..end]) {
                         *hit = packet.hit(&self.tree.order);
                     }
-                } else {
-                    (passed, pause) = (0, (2 * pause + 1).min(LONGEST));
-                    alone(rays, hits);
+                    done = end;
                 }
-                continue;
-            }
-            for ((packet, ray), hit) in packets.iter_mut().zip(rays).zip(hits) {
-                let packet = std::slice::from_mut(packet);
-                match Interval::of(packet) {
-                    Some(interval) if self.visit_tile::<FAST>(packet, &interval, &mut stack) => {
-                        *hit = packet[0].hit(&self.tree.order);
+                Some(_) => {
+                    let end = (end + pause * PACKETS).min(rays.len());
+                    alone(&rays[done..end], &mut hits[done..end]);
+                    pause = (2 * pause + 1).min(LONGEST);
+                    done = end;
+                }
+                None => {
+                    for (packet, at) in packets.iter_mut().zip(done..end) {
+                        let packet = std::slice::from_mut(packet);
+                        match Interval::of(packet) {
+                            Some(interval) if self.visit_tile::<FAST>(packet, &interval, &mut stack) => {
+                                hits[at] = packet[0].hit(&self.tree.order);
+                            }
+                            _ => alone(&rays[at..=at], &mut hits[at..=at]),
+                        }
                     }
-                    _ => alone(std::slice::from_ref(ray), std::slice::from_mut(hit)),
+                    done = end;
                 }
             }
         }
@@ -286,8 +280,7 @@ impl View<'_> {
             if candidates == 0 {
                 continue;
             }
-            let plane = |row: usize| F32x8::splat(parent.plane(row).lane(slot));
-            let [near, far] = [interval.near, interval.far].map(|[x, y, z]| Vec3::new(plane(x), plane(y), plane(z)));
+            let [near, far] = interval.facing.planes(parent).map(|planes| planes.splat_lane(slot));
             let mut met = false;
             blocks += 1;
             if blocks >= TRIAL && 2 * rays < blocks {
@@ -308,21 +301,17 @@ impl View<'_> {
         true
     }
 
-    /// Pushes the children of a node that some ray may enter; returns the new top of the stack.
+    /// Pushes the children of a node that some ray may enter, as the node's place · 8 + slot; returns the new top of the stack.
     #[inline(always)]
     fn enter_tile(&self, interval: &Interval, node: Child, until: f32, stack: &mut Stack, top: usize) -> usize {
         let cell = self.cell(node);
-        let [enter, leave] =
-            interval.slab(interval.near.map(|row| cell.plane(row)), interval.far.map(|row| cell.plane(row)));
+        let [near, far] = interval.facing.planes(cell);
+        let [enter, leave] = interval.slab(near, far);
         let entered = enter.max(interval.from).le(leave.min(F32x8::splat(until)));
-        let order = spread(cell.order(interval.octant));
-        let bits = entered.permute(order).to_bits();
-        let order = order.permute(spread(TOGETHER[bits as usize & 0xff]));
-        // The order has slots in its lowest three bits, and other slots above.
-        let keys = (order & U32x8::splat(7)) | U32x8::splat(node.0 << 3);
-        stack.children[top..top + 8].copy_from_slice(&keys.to_array());
-        stack.nears[top..top + 8].copy_from_slice(&enter.to_bits().permute(order).as_real().to_array());
-        let end = top + bits.count_ones() as usize;
+        let slots = cell.in_order(&interval.facing, entered);
+        let keys = (slots.which & U32x8::splat(7)) | U32x8::splat(node.0 << 3);
+        stack.store(top, keys, Some(enter.to_bits().permute(slots.which).as_real()));
+        let end = top + slots.count;
         for key in &stack.children[top..end] {
             self.prefetch(Child(cell.children().lane(*key as usize)));
         }
@@ -353,8 +342,7 @@ impl Packet {
             });
         } else {
             for_each_lane(Mask8::from_bits(candidates), |lane| {
-                let one = |x: F32x8| F32x8::splat(x.lane(lane));
-                let corners = corners.map(|c| Vec3::new(one(c.x), one(c.y), one(c.z)));
+                let corners = corners.map(|c| c.splat_lane(lane));
                 let crossing = crossing::<FAST>(&self.beam, &corners, self.t_min, self.t_best);
                 if crossing.mask.any() {
                     met |= self.take(&crossing, entered, block.index(lane));

@@ -8,10 +8,11 @@
 use super::boxes::{Box3, Ref};
 use super::collapse::Collapse;
 use super::pages::{Pages, Rows};
+use super::stack::{packed, spread, together};
 use super::{ObvhsPreset, bridge, order, sah};
 use crate::geometry::{Geometry, Order};
 use glam::Vec4;
-use gonio_kernel::{F32x8, Real, U32x8, Vec3};
+use gonio_kernel::{F32x8, Mask8, Real, U32x8, Vec3};
 use wide::f32x8;
 
 /// How many children a node has, and how many triangles a block.
@@ -73,6 +74,14 @@ impl Cell<'_> {
         F32x8(self.0[7]).lane(octant).to_bits()
     }
 
+    /// The slots of a set, the farthest first.
+    #[inline(always)]
+    pub(super) fn in_order(self, facing: &Facing, set: Mask8) -> Slots {
+        let order = spread(self.order(facing.octant));
+        let set = set.permute(order).to_bits();
+        Slots { which: order.permute(together(set)), count: set.count_ones() as usize }
+    }
+
     #[inline(always)]
     pub(super) fn corners(self) -> [Vec3<F32x8>; 3] {
         let r = self.0.map(F32x8);
@@ -89,6 +98,45 @@ impl Cell<'_> {
     #[inline(always)]
     pub(super) fn index(self, lane: usize) -> u32 {
         F32x8(self.0[9]).lane(lane).to_bits()
+    }
+}
+
+/// Some slots of a node, one after the other.
+#[derive(Clone, Copy)]
+pub(super) struct Slots {
+    /// In the lowest three bits of the first lanes.
+    pub(super) which: U32x8,
+    pub(super) count: usize,
+}
+
+impl Slots {
+    /// The slots of a set, that where a hit is likeliest last.
+    #[inline(always)]
+    pub(super) fn as_they_are(set: Mask8) -> Self {
+        let set = set.to_bits();
+        Self { which: together(set), count: set.count_ones() as usize }
+    }
+}
+
+/// Which sides of boxes rays meet first: which of a node's rows are near planes, which far ones.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Facing {
+    near: [usize; 3],
+    far: [usize; 3],
+    octant: usize,
+}
+
+impl Facing {
+    /// Of rays that point down those axes that have a 1, and up those that have a 0.
+    #[inline(always)]
+    pub(super) fn of([x, y, z]: [usize; 3]) -> Self {
+        Self { near: [x, 2 + y, 4 + z], far: [x ^ 1, 2 + (y ^ 1), 4 + (z ^ 1)], octant: x | y << 1 | z << 2 }
+    }
+
+    /// The near and the far planes of a node's children.
+    #[inline(always)]
+    pub(super) fn planes(&self, node: Cell<'_>) -> [Vec3<F32x8>; 2] {
+        [self.near, self.far].map(|[x, y, z]| Vec3::new(node.plane(x), node.plane(y), node.plane(z)))
     }
 }
 
@@ -143,7 +191,10 @@ impl Tree {
             [tree.lo, tree.hi] = [bounds.lo, bounds.hi].map(|v| Vec3::new(v.x, v.y, v.z));
         }
         match roots[..] {
-            [] => tree.cells.push(node_of(&[])),
+            [] => {
+                tree.root = tree.new_node(1);
+                tree.settle_node(tree.root, &[]);
+            }
             [root] => tree.root = root,
             _ => {
                 let nodes = Collapse::new(&top, 1).run(&mut tree, |_, node| roots[top[node].first as usize]);
@@ -187,8 +238,16 @@ impl Tree {
         Child((self.cells.rows().len() - 1) as u32)
     }
 
+    /// Fills in a node.
     pub(super) fn set_node(&mut self, node: Child, children: &[(Box3, Child)]) {
         self.cells.set(node.place(), node_of(children));
+    }
+
+    /// Fills in a node whose children are in the slots where they stay.
+    pub(super) fn settle_node(&mut self, node: Child, children: &[(Box3, Child)]) {
+        let mut rows = node_of(children);
+        rows[7] = orders_of(children).0;
+        self.cells.set(node.place(), rows);
     }
 
     /// Appends a block of triangles.
@@ -257,24 +316,10 @@ fn triangles(binary: &[sah::Binary], node: usize) -> Vec<u32> {
     found
 }
 
-/// A node of children and their boxes.
+/// A node of children and their boxes, whose orders are not known yet.
 fn node_of(children: &[(Box3, Child)]) -> Rows {
     let plane = |pick: fn(&Box3) -> f32| {
         F32x8::new(std::array::from_fn(|slot| pick(children.get(slot).map_or(&Box3::EMPTY, |(bounds, _)| bounds))))
-    };
-    let order = |octant: usize| {
-        let sign = |axis: usize| if octant >> axis & 1 == 0 { 1.0 } else { -1.0 };
-        let depth = |slot: &usize| {
-            let center = children[*slot].0.center2();
-            center.x * sign(0) + center.y * sign(1) + center.z * sign(2)
-        };
-        let mut slots: Vec<usize> = (0..children.len()).collect();
-        slots.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
-        slots.iter().enumerate().fold(0, |packed, (place, &slot)| packed | (slot as u32) << (3 * place))
-    };
-    // Unused slots too have a place in the order: slot 0 must not stand in for them.
-    let order = |octant: usize| {
-        (children.len()..WIDTH).fold(order(octant), |packed, slot| packed | (slot as u32) << (3 * slot))
     };
     [
         plane(|b| b.lo.x),
@@ -284,11 +329,27 @@ fn node_of(children: &[(Box3, Child)]) -> Rows {
         plane(|b| b.lo.z),
         plane(|b| b.hi.z),
         U32x8::new(std::array::from_fn(|slot| children.get(slot).map_or(0, |child| child.1.0))).as_real(),
-        U32x8::new(std::array::from_fn(order)).as_real(),
+        F32x8::ZERO,
         F32x8::ZERO,
         F32x8::ZERO,
     ]
     .map(|row| row.0)
+}
+
+/// The orders of children for each octant.
+fn orders_of(children: &[(Box3, Child)]) -> F32x8 {
+    let order = |octant: usize| {
+        let sign = |axis: usize| if octant >> axis & 1 == 0 { 1.0 } else { -1.0 };
+        let depth = |slot: &usize| {
+            let center = children[*slot].0.center2();
+            center.x * sign(0) + center.y * sign(1) + center.z * sign(2)
+        };
+        let mut slots: Vec<usize> = (0..children.len()).collect();
+        slots.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
+        // Unused slots too have a place in the order: slot 0 must not stand in for them.
+        packed(slots.into_iter().chain(children.len()..WIDTH))
+    };
+    U32x8::new(std::array::from_fn(order)).as_real()
 }
 
 impl Cell<'_> {
