@@ -75,19 +75,36 @@ const SLACK: f32 = 1.0 / 32_768.0;
 /// The slack of the fast test, which promises nothing to the last bit: no more than the padding of boxes.
 const FAST_SLACK: f32 = PAD;
 
-/// Rays with what their tests need, computed once per ray: eight rays, or one ray in all eight lanes.
+/// Rays with what their tests need, computed once per ray: eight rays, or one ray in all eight lanes; or one ray as it is kept.
 #[derive(Clone, Copy, Debug)]
-pub struct Beam {
-    origin: Vec3<F32x8>,
-    dir: Vec3<F32x8>,
-    across: [Vec3<F32x8>; 2],
-    inverse: Vec3<F32x8>,
+pub struct Beam<R = F32x8> {
+    origin: Vec3<R>,
+    dir: Vec3<R>,
+    across: [Vec3<R>; 2],
+    inverse: Vec3<R>,
     /// What a near plane's coordinate times the inverse lacks to be the distance of the padded plane.
-    enter: Vec3<F32x8>,
+    enter: Vec3<R>,
     /// The same for a far plane.
-    leave: Vec3<F32x8>,
+    leave: Vec3<R>,
     /// The distance to the farthest corner of the scene, at most.
-    reach: F32x8,
+    reach: R,
+}
+
+impl Beam<f32> {
+    /// This ray in all eight lanes.
+    #[inline(always)]
+    pub fn splat(&self) -> Beam {
+        let each = Vec3::broadcast;
+        Beam {
+            origin: each(self.origin),
+            dir: each(self.dir),
+            across: [each(self.across[0]), each(self.across[1])],
+            inverse: each(self.inverse),
+            enter: each(self.enter),
+            leave: each(self.leave),
+            reach: F32x8::splat(self.reach),
+        }
+    }
 }
 
 impl Beam {
@@ -107,18 +124,18 @@ impl Beam {
         Self { origin, dir, across: [u, v], inverse, enter, leave, reach }
     }
 
-    /// Lane `lane` of these rays, in all eight lanes.
+    /// One of these rays.
     #[inline(always)]
-    pub fn splat_lane(&self, lane: usize) -> Self {
-        let each = |v: Vec3<F32x8>| v.splat_lane(lane);
-        Self {
-            origin: each(self.origin),
-            dir: each(self.dir),
-            across: self.across.map(each),
-            inverse: each(self.inverse),
-            enter: each(self.enter),
-            leave: each(self.leave),
-            reach: self.reach.splat_lane(lane),
+    pub fn lane(&self, lane: usize) -> Beam<f32> {
+        let each = |v: &Vec3<F32x8>| v.lane(lane);
+        Beam {
+            origin: each(&self.origin),
+            dir: each(&self.dir),
+            across: [each(&self.across[0]), each(&self.across[1])],
+            inverse: each(&self.inverse),
+            enter: each(&self.enter),
+            leave: each(&self.leave),
+            reach: self.reach.lane(lane),
         }
     }
 

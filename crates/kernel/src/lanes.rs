@@ -181,10 +181,15 @@ impl Vec3<F32x8> {
     pub fn broadcast(v: Vec3<f32>) -> Self {
         Self::new(F32x8::splat(v.x), F32x8::splat(v.y), F32x8::splat(v.z))
     }
+    /// Lane `lane` modulo 8.
+    #[inline(always)]
+    pub fn lane(&self, lane: usize) -> Vec3<f32> {
+        Vec3::new(self.x.lane(lane), self.y.lane(lane), self.z.lane(lane))
+    }
     /// Lane `lane` modulo 8, in every lane.
     #[inline(always)]
     pub fn splat_lane(&self, lane: usize) -> Self {
-        Self::new(self.x.splat_lane(lane), self.y.splat_lane(lane), self.z.splat_lane(lane))
+        Self::broadcast(self.lane(lane))
     }
     /// Lane *i* is `f(i)`; `f` is asked once per component and lane.
     #[inline(always)]

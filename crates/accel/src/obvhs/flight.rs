@@ -6,9 +6,10 @@
 //! go first and those at blocks after, so that the kind of a visit is not a branch. When a ray is done the next of the slice takes
 //! its place, so that all places stay taken to the end.
 //!
-//! A node is left without a branch ([`super::stack`]): the children that the ray enters are stored all at once, farthest first. Their order is that of the ray's octant, computed when the tree was built (compare
-//! Ylitie, Karras & Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs"). For rays that look
-//! for any hit it is the order in which one is likeliest to be found ([`super::order`]).
+//! A node is left without a branch ([`super::stack`]): the children that the ray enters are stored all at once, farthest first.
+//! Their order is that of the ray's octant, computed when the tree was built (compare Ylitie, Karras & Laine 2017, "Efficient
+//! Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs"). For rays that look for any hit it is the order in which one is
+//! likeliest to be found ([`super::order`]).
 
 use super::stack::Stack;
 use super::tree::{Cell, Child, Facing, Slots, View};
@@ -35,7 +36,7 @@ pub(super) trait Quest {
 pub(super) struct Walk {
     /// Its number: packet · 8 + lane.
     pub(super) ray: usize,
-    beam: Beam,
+    beam: Beam<f32>,
     facing: Facing,
     t_min: f32,
     slack: f32,
@@ -91,7 +92,7 @@ impl View<'_> {
         let Some(first) = rays.first() else { return };
         let beam = Beam::new(first.origin, first.dir, self.tree.lo, self.tree.hi);
         let mut queue = Queue { rays, begun: 0, left: 0, beam, down: [0; 3] };
-        let mut walks: [Walk; FLIGHT] = std::array::from_fn(|i| Walk::nowhere(beam, i * size));
+        let mut walks: [Walk; FLIGHT] = std::array::from_fn(|i| Walk::nowhere(beam.lane(0), i * size));
         let mut next = Next::default();
         for (i, walk) in walks.iter_mut().enumerate() {
             if self.take::<FAST, Q>(&mut queue, walk, quest) {
@@ -108,7 +109,7 @@ impl View<'_> {
             for_each_bit(now.block, |i, bit| {
                 let walk = &mut walks[i];
                 let block = self.cell(walk.next);
-                let crossing = test::<FAST>(&walk.beam, &block.corners(), walk.t_min, walk.t_best);
+                let crossing = test::<FAST>(&walk.beam.splat(), &block.corners(), walk.t_min, walk.t_best);
                 if crossing.mask.to_bits() != 0 && quest.meet(walk, &crossing, block) {
                     next.done |= bit;
                 } else {
@@ -137,7 +138,7 @@ impl View<'_> {
         let packet = queue.begun - 1;
         walk.facing = Facing::of(queue.down.map(|down| (down >> lane & 1) as usize));
         walk.ray = packet * F32x8::LANES + lane;
-        walk.beam = queue.beam.splat_lane(lane);
+        walk.beam = queue.beam.lane(lane);
         (walk.t_min, walk.t_best) = (queue.rays[packet].t_min.lane(lane), queue.rays[packet].t_max.lane(lane));
         walk.slack = queue.beam.slack::<FAST>().lane(lane);
         (walk.from, walk.until) = (walk.t_min - walk.slack, walk.t_best + walk.slack);
@@ -221,7 +222,7 @@ pub(super) fn sound(ray: &Ray8) -> Mask8 {
 }
 
 impl Walk {
-    fn nowhere(beam: Beam, base: usize) -> Self {
+    fn nowhere(beam: Beam<f32>, base: usize) -> Self {
         Self {
             ray: 0,
             beam,
@@ -243,7 +244,7 @@ impl Walk {
     #[inline(always)]
     fn visit<Q: Quest>(&mut self, node: Cell<'_>, stacks: &mut Stack) {
         let [near, far] = self.facing.planes(node);
-        let [enter, leave] = self.beam.slab(near, far);
+        let [enter, leave] = self.beam.splat().slab(near, far);
         let entered = enter.max(F32x8::splat(self.from)).le(leave.min(F32x8::splat(self.until)));
         let (slots, nears) = if Q::ANY {
             (Slots::as_they_are(entered), None)

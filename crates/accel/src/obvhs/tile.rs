@@ -333,7 +333,7 @@ impl Packet {
         let mut met = false;
         if 2 * entered.to_bits().count_ones() <= candidates.count_ones() {
             for_each_lane(entered, |ray| {
-                let beam = self.beam.splat_lane(ray);
+                let beam = self.beam.lane(ray).splat();
                 let crossing = test::<FAST>(&beam, corners, self.t_min.lane(ray), self.t_best.lane(ray));
                 for_each_lane(crossing.mask, |lane| {
                     let crossing = crossing.splat_lane(lane);
