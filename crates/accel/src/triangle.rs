@@ -235,30 +235,65 @@ pub fn intersect(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: F32x8, t_max: F
     edges.cross(beam, || Plane::of(corners), t_min, t_max)
 }
 
-/// The fast test, lane by lane: Möller & Trumbore 1997, "Fast, Minimum Storage Ray/Triangle Intersection", without the division
-/// until the ray is known to be inside.
+/// The fast test, lane by lane.
+#[inline(always)]
+pub fn intersect_fast(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: F32x8, t_max: F32x8) -> Crossing {
+    Facet::of(corners).cross(beam, t_min, t_max)
+}
+
+/// What the fast test needs of triangles: Möller & Trumbore 1997, "Fast, Minimum Storage Ray/Triangle Intersection", without the
+/// division until the ray is known to be inside.
 ///
 /// Every triangle measures the edge that it shares with its neighbour from its own first corner, so a ray at the edge may
 /// be outside of both: see [`Intersect::Fast`] for how often. An origin that lies in the plane may hit at a t of its rounding.
-#[inline(always)]
-pub fn intersect_fast(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: F32x8, t_max: F32x8) -> Crossing {
-    let [c0, c1, c2] = *corners;
-    let (e1, e2, to_corner) = (c0 - c1, c2 - c0, c0 - beam.origin);
-    let (normal, moment) = (e2.cross(e1), to_corner.cross(beam.dir));
-    let fall = normal.dot(beam.dir);
-    let (size, sign) = (fall.abs(), F32x8::ONE.copysign(fall));
-    // One moment serves both edges at the first corner: neighbours that share it as their first see the same.
-    let (second, third) = (moment.dot(e2) * sign, moment.dot(e1) * sign);
-    let first = size - second - third;
-    let inside = first.ge(F32x8::ZERO) & second.ge(F32x8::ZERO) & third.ge(F32x8::ZERO);
-    let mut crossing = Crossing { mask: inside, t: F32x8::ZERO, edges: [first, second, third] };
-    if inside.to_bits() != 0 {
-        let height = normal.dot(to_corner) * sign;
-        crossing.t = height / size;
-        // height > 0 also fails for a triangle without an area, whose t is not a number.
-        crossing.mask = inside & height.gt(F32x8::ZERO) & crossing.t.ge(t_min) & crossing.t.le(t_max);
+#[derive(Clone, Copy, Debug)]
+pub struct Facet {
+    corner: Vec3<F32x8>,
+    /// From the second corner to the first, and from the first to the third.
+    sides: [Vec3<F32x8>; 2],
+    normal: Vec3<F32x8>,
+}
+
+impl Facet {
+    /// The facets of triangles.
+    #[inline(always)]
+    pub fn of(corners: &[Vec3<F32x8>; 3]) -> Self {
+        let [c0, c1, c2] = *corners;
+        let (e1, e2) = (c0 - c1, c2 - c0);
+        Self { corner: c0, sides: [e1, e2], normal: e2.cross(e1) }
     }
-    crossing
+
+    /// That of one lane, in all eight.
+    #[inline(always)]
+    pub fn splat_lane(&self, lane: usize) -> Self {
+        Self {
+            corner: self.corner.splat_lane(lane),
+            sides: [self.sides[0].splat_lane(lane), self.sides[1].splat_lane(lane)],
+            normal: self.normal.splat_lane(lane),
+        }
+    }
+
+    /// Tests lane by lane whether the ray meets the triangle with t_min ≤ t ≤ t_max.
+    #[inline(always)]
+    pub fn cross(&self, beam: &Beam, t_min: F32x8, t_max: F32x8) -> Crossing {
+        let [e1, e2] = self.sides;
+        let to_corner = self.corner - beam.origin;
+        let moment = to_corner.cross(beam.dir);
+        let fall = self.normal.dot(beam.dir);
+        let (size, sign) = (fall.abs(), F32x8::ONE.copysign(fall));
+        // One moment serves both edges at the first corner: neighbours that share it as their first see the same.
+        let (second, third) = (moment.dot(e2) * sign, moment.dot(e1) * sign);
+        let first = size - second - third;
+        let inside = first.ge(F32x8::ZERO) & second.ge(F32x8::ZERO) & third.ge(F32x8::ZERO);
+        let mut crossing = Crossing { mask: inside, t: F32x8::ZERO, edges: [first, second, third] };
+        if inside.to_bits() != 0 {
+            let height = self.normal.dot(to_corner) * sign;
+            crossing.t = height / size;
+            // height > 0 also fails for a triangle without an area, whose t is not a number.
+            crossing.mask = inside & height.gt(F32x8::ZERO) & crossing.t.ge(t_min) & crossing.t.le(t_max);
+        }
+        crossing
+    }
 }
 
 /// The three edge functions of projected triangles.

@@ -11,13 +11,13 @@
 //! at many blocks which few of them enter: far away, or in a small picture, neighbours have nothing in common. After such a
 //! tile ever fewer are tried. Every test of a triangle is the same, so results are too.
 
-use super::flight::{crossing, sound, test};
+use super::flight::sound;
 use super::for_each_lane;
 use super::stack::Stack;
 use super::tree::{Cell, Child, Facing, Tree, View};
 use crate::geometry::{Order, TriangleId};
 use crate::ray::{Hit8, Ray8};
-use crate::triangle::{Beam, Crossing, barycentric};
+use crate::triangle::{Beam, Crossing, Facet, barycentric, intersect};
 use gonio_kernel::{F32x8, Mask, Mask8, Real, U32x8, Vec3};
 
 /// Most packets of a tile.
@@ -281,7 +281,7 @@ impl View<'_> {
                 continue;
             }
             let [near, far] = interval.facing.planes(parent).map(|planes| planes.splat_lane(slot));
-            let mut met = false;
+            let (mut met, mut faces) = (false, None);
             blocks += 1;
             if blocks >= TRIAL && 2 * rays < blocks {
                 return false;
@@ -291,7 +291,8 @@ impl View<'_> {
                 let entered = enter.max(packet.from).le(leave.min(packet.until));
                 if entered.any() {
                     rays += entered.to_bits().count_ones();
-                    met |= packet.meet::<FAST>(entered, block, &corners, candidates);
+                    let faces = faces.get_or_insert_with(|| Faces::<FAST>::of(corners));
+                    met |= packet.meet(entered, block, faces, candidates);
                 }
             }
             if met {
@@ -319,6 +320,38 @@ impl View<'_> {
     }
 }
 
+/// The triangles of a block.
+struct Faces<const FAST: bool> {
+    corners: [Vec3<F32x8>; 3],
+    /// What the fast test needs of them, computed once for all packets.
+    facet: Option<Facet>,
+}
+
+impl<const FAST: bool> Faces<FAST> {
+    #[inline(always)]
+    fn of(corners: [Vec3<F32x8>; 3]) -> Self {
+        Self { corners, facet: FAST.then(|| Facet::of(&corners)) }
+    }
+
+    /// Tests eight rays against one triangle.
+    #[inline(always)]
+    fn one(&self, lane: usize, beam: &Beam, t_min: F32x8, t_max: F32x8) -> Crossing {
+        match &self.facet {
+            Some(facet) => facet.splat_lane(lane).cross(beam, t_min, t_max),
+            None => intersect(beam, &self.corners.map(|c| c.splat_lane(lane)), t_min, t_max),
+        }
+    }
+
+    /// Tests one ray, in all lanes, against eight triangles.
+    #[inline(always)]
+    fn all(&self, beam: &Beam, t_min: F32x8, t_max: F32x8) -> Crossing {
+        match &self.facet {
+            Some(facet) => facet.cross(beam, t_min, t_max),
+            None => intersect(beam, &self.corners, t_min, t_max),
+        }
+    }
+}
+
 impl Packet {
     /// Tests the rays that enter a block's box against those of its triangles that are candidates; whether some came to a
     /// better hit.
@@ -327,14 +360,14 @@ impl Packet {
         &mut self,
         entered: Mask8,
         block: Cell<'_>,
-        corners: &[Vec3<F32x8>; 3],
+        faces: &Faces<FAST>,
         candidates: u32,
     ) -> bool {
         let mut met = false;
         if 2 * entered.to_bits().count_ones() <= candidates.count_ones() {
             for_each_lane(entered, |ray| {
-                let beam = self.beam.lane(ray).splat();
-                let crossing = test::<FAST>(&beam, corners, self.t_min.lane(ray), self.t_best.lane(ray));
+                let (beam, t_min) = (self.beam.lane(ray).splat(), self.t_min.splat_lane(ray));
+                let crossing = faces.all(&beam, t_min, self.t_best.splat_lane(ray));
                 for_each_lane(crossing.mask, |lane| {
                     let crossing = crossing.splat_lane(lane);
                     met |= self.take(&crossing, Mask8::from_bits(1 << ray), block.index(lane));
@@ -342,8 +375,7 @@ impl Packet {
             });
         } else {
             for_each_lane(Mask8::from_bits(candidates), |lane| {
-                let corners = corners.map(|c| c.splat_lane(lane));
-                let crossing = crossing::<FAST>(&self.beam, &corners, self.t_min, self.t_best);
+                let crossing = faces.one(lane, &self.beam, self.t_min, self.t_best);
                 if crossing.mask.any() {
                     met |= self.take(&crossing, entered, block.index(lane));
                 }
