@@ -550,3 +550,24 @@ fn a_long_tail_of_shrinking_triangles_does_not_overflow_the_stack() {
         assert_eq!(bits(a), bits(&b), "lane {} of {:?}", i % 8, rays[i / 8]);
     }
 }
+
+/// A triangle whose plane nearly contains the ray, a whole unit beside it; but its box the ray passes through, and its edge
+/// functions may be smaller than the rounding of their products.
+#[test]
+fn a_triangle_in_the_plane_of_a_ray_is_not_hit_from_beside() {
+    let mut random = Random(5);
+    let along = Vec3::new(1.0, 1.0, 0.0).normalize();
+    let side = Vec3::new(along.y, -along.x, 0.0);
+    let ray = Ray8::new(Vec3::broadcast(along * -20.0), Vec3::broadcast(along));
+    let mut met = 0;
+    for _ in 0..400_000 {
+        let corners = [-5.0, -2.0, 5.0].map(|forth| {
+            let z = Vec3::new(0.0, 0.0, 1e-6 * (random.unit() - 0.5));
+            z + side * (1.0 + 0.1 * random.unit()) + along * forth
+        });
+        let positions = corners.map(<[f32; 3]>::from).to_vec();
+        let geometry = Geometry::of_mesh(Mesh { positions, triangles: vec![[0, 1, 2]] }).unwrap();
+        met += usize::from(hits(&Brute::new(&geometry), &[ray])[0].is_some());
+    }
+    assert_eq!(met, 0, "of 400,000 triangles");
+}

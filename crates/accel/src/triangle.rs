@@ -3,18 +3,18 @@
 //! **Watertight.** The vertices, relative to the origin, are projected on two axes across the direction; a projected vertex
 //! depends on nothing but itself and the ray, so triangles that share a vertex see the same point. The ray is inside if
 //! the three edge functions p.x·q.y − p.y·q.x have no two different signs. Rounding is monotonic, so the difference of two
-//! rounded products never has the wrong sign (it may be zero, which counts as inside on both sides): no ray falls between
-//! two triangles that share an edge. This is the idea of Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection",
-//! with an orthonormal projection instead of a shear, which needs no permutation of axes per lane.
-//! The products must stay unfused.
+//! rounded products never has the wrong sign, but it may be zero: then the sign is found in `f64`, where the products are
+//! exact. One that is truly zero counts as inside on both sides, so no ray falls between two triangles that share an
+//! edge. This is the idea of Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection", with an
+//! orthonormal projection instead of a shear, which needs no permutation of axes per lane. The products must stay unfused.
 //!
 //! **Distance** comes from the plane: t = n·(v₀ − o)/n·d. An origin that lies in the plane up to rounding (|n·(v₀ − o)| below
 //! its error bound) is on the triangle and does not hit it, which is what makes t_min = 0 safe for secondary rays.
 //!
 //! **Agreement.** A traversal enters a box if the ray meets it, grown by [`PAD`], no farther than [`Beam::slack`] behind the
 //! best hit so far. That loses no hit, because a hit's t is within the slack of where the ray truly is inside the triangle's
-//! box: by the error bound of h/n·d where the ray is not too nearly parallel to the plane (`STEEP`), and where it is, or
-//! where an edge function is zero, by limiting t to the slab interval of the triangle's own box. That interval lies within the interval of every box around
+//! box: by the error bound of h/n·d where the ray is not too nearly parallel to the plane (`STEEP`), and where it is, by
+//! limiting t to the slab interval of the triangle's own box. That interval lies within the interval of every box around
 //! it, in floating point too, because each of its steps is monotonic. So every backend finds the hit that all triangles in
 //! turn would give, to the last bit.
 
@@ -231,8 +231,8 @@ pub fn barycentric<R: Real>(edges: &[R; 3]) -> [R; 2] {
 #[inline(always)]
 pub fn intersect(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: F32x8, t_max: F32x8) -> Crossing {
     let [c0, c1, c2] = *corners;
-    let edges = Edges::new(beam.project(c0), beam.project(c1), beam.project(c2));
-    edges.cross(beam, || Plane::of(corners), t_min, t_max)
+    let projected = [beam.project(c0), beam.project(c1), beam.project(c2)];
+    Edges::new(&projected).cross(beam, || projected, || Plane::of(corners), t_min, t_max)
 }
 
 /// The fast test, lane by lane.
@@ -315,9 +315,8 @@ impl From<[F32x8; 3]> for Edges {
 impl Edges {
     /// From projected corners, see [`Beam::project`].
     #[inline(always)]
-    pub fn new(p0: [F32x8; 2], p1: [F32x8; 2], p2: [F32x8; 2]) -> Self {
-        let edge = |p: [F32x8; 2], q: [F32x8; 2]| p[0] * q[1] - p[1] * q[0];
-        Self::from([edge(p1, p2), edge(p2, p0), edge(p0, p1)])
+    pub fn new(projected: &[[F32x8; 2]; 3]) -> Self {
+        Self::from(edge_functions(projected, |p, q| p[0] * q[1] - p[1] * q[0]))
     }
 
     /// Where no two edge functions have different signs.
@@ -326,23 +325,51 @@ impl Edges {
         self.least.ge(F32x8::ZERO) | self.most.le(F32x8::ZERO)
     }
 
-    /// Completes the test; the plane is asked for only if some lane is inside.
+    /// Completes the test; the projected corners and the plane are asked for only where they are needed.
     #[inline(always)]
-    pub fn cross(&self, beam: &Beam, plane: impl FnOnce() -> Plane<F32x8>, t_min: F32x8, t_max: F32x8) -> Crossing {
+    pub fn cross(
+        &self,
+        beam: &Beam,
+        projected: impl FnOnce() -> [[F32x8; 2]; 3],
+        plane: impl FnOnce() -> Plane<F32x8>,
+        t_min: F32x8,
+        t_max: F32x8,
+    ) -> Crossing {
         let inside = self.inside();
         let mut crossing = Crossing { mask: inside, t: F32x8::ZERO, edges: self.e };
         if inside.to_bits() != 0 {
             let [e0, e1, e2] = self.e;
             let has_area = !(e0 + e1 + e2).same(F32x8::ZERO);
-            let mask = inside & has_area;
+            let mut mask = inside & has_area;
             // A zero may be the rounding of a tiny triangle far to the side, where it says nothing.
             let on_edge = mask & !(self.least.gt(F32x8::ZERO) | self.most.lt(F32x8::ZERO));
-            let (t, in_front) = plane().distance(beam, mask, on_edge, t_min, t_max);
+            if on_edge.to_bits() != 0 {
+                mask = mask & (!on_edge | exactly_inside(&projected(), on_edge));
+            }
+            let (t, in_front) = plane().distance(beam, mask, t_min, t_max);
             crossing.mask = mask & in_front;
             crossing.t = t;
         }
         crossing
     }
+}
+
+/// The edge functions of three projected corners, each opposite its corner.
+#[inline(always)]
+fn edge_functions<P, E>([p0, p1, p2]: &[P; 3], edge: impl Fn(&P, &P) -> E) -> [E; 3] {
+    [edge(p1, p2), edge(p2, p0), edge(p0, p1)]
+}
+
+/// The lanes of a set in which no two edge functions have different signs, those of `f64` products, which are exact.
+#[cold]
+fn exactly_inside(projected: &[[F32x8; 2]; 3], lanes: Mask8) -> Mask8 {
+    let is_inside = |lane: usize| {
+        let corners = projected.map(|p| p.map(|x| f64::from(x.lane(lane))));
+        let edges = edge_functions(&corners, |p, q| p[0] * q[1] - p[1] * q[0]);
+        edges.iter().all(|&e| e >= 0.0) || edges.iter().all(|&e| e <= 0.0)
+    };
+    let inside = (0..F32x8::LANES).filter(|&lane| lanes.lane(lane) && is_inside(lane));
+    Mask8::from_bits(inside.fold(0, |bits, lane| bits | 1 << lane))
 }
 
 /// What the distance test needs of a triangle.
@@ -401,9 +428,9 @@ impl Plane<f32> {
 
 impl Plane<F32x8> {
     /// The distance at which the ray meets the plane, and whether it lies in front; only for the lanes of `mask`. Lanes
-    /// that are shallow or `doubtful` must meet the triangle's box.
+    /// that are shallow must meet the triangle's box.
     #[inline(always)]
-    fn distance(&self, beam: &Beam, mask: Mask8, doubtful: Mask8, t_min: F32x8, t_max: F32x8) -> (F32x8, Mask8) {
+    fn distance(&self, beam: &Beam, mask: Mask8, t_min: F32x8, t_max: F32x8) -> (F32x8, Mask8) {
         let to_corner = self.corner - beam.origin;
         let height = self.normal.dot(to_corner);
         let rounding = self.products.dot(to_corner.abs()) * F32x8::splat(PLANE_ERROR);
@@ -411,7 +438,7 @@ impl Plane<F32x8> {
         let fall = self.normal.dot(beam.dir);
         let mut t = height / fall;
         let steepest = (self.products.x + self.products.y + self.products.z) * F32x8::splat(STEEP);
-        let shallow = doubtful | (mask & ok & !fall.abs().ge(steepest));
+        let shallow = mask & ok & !fall.abs().ge(steepest);
         if shallow.to_bits() != 0 {
             let [t_near, t_far] = self.own_slab(beam);
             t = F32x8::select(shallow, t.max(t_near).min(t_far), t);

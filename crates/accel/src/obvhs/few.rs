@@ -33,6 +33,14 @@ struct Row {
 /// A ray's projection of every vertex: three corners each for [`MOST`] triangles, and room so that a byte is an index.
 type Projected = [[F32x8; 2]; 256];
 
+impl Row {
+    /// Where its corners are.
+    #[inline(always)]
+    fn projected(&self, projected: &Projected) -> [[F32x8; 2]; 3] {
+        self.corners.map(|v| projected[v as usize])
+    }
+}
+
 impl Few {
     /// The list, if the geometry is small enough.
     pub(super) fn of(geometry: &Geometry) -> Option<Self> {
@@ -75,8 +83,7 @@ impl Few {
     fn candidates(&self, projected: &Projected, edges: &mut [[F32x8; 3]; MOST]) -> u64 {
         let mut inside = 0;
         for (i, (row, edges)) in self.rows.iter().zip(edges).enumerate() {
-            let [a, b, c] = row.corners.map(|v| projected[v as usize]);
-            let found = Edges::new(a, b, c);
+            let found = Edges::new(&row.projected(projected));
             *edges = found.e;
             inside |= u64::from(found.inside().to_bits() != 0) << i;
         }
@@ -94,7 +101,8 @@ impl Few {
             let mut best_row = U32x8::splat(NO_HIT);
             for_each_bit(candidates, |i| {
                 let row = &self.rows[i];
-                let c = Edges::from(edges[i]).cross(&beam, || row.plane.splat(), ray.t_min, t_best);
+                let (corners, plane) = (|| row.projected(&projected), || row.plane.splat());
+                let c = Edges::from(edges[i]).cross(&beam, corners, plane, ray.t_min, t_best);
                 let nearer = c.mask & c.t.lt(t); // triangles come in order: on a tie the earlier one stays
                 if nearer.any() {
                     t = F32x8::select(nearer, c.t, t);
@@ -126,7 +134,8 @@ impl Few {
             let mut shut = Mask8::splat(false);
             for_each_bit(candidates, |i| {
                 let row = &self.rows[i];
-                let c = Edges::from(edges[i]).cross(&beam, || row.plane.splat(), ray.t_min, t_max);
+                let (corners, plane) = (|| row.projected(&projected), || row.plane.splat());
+                let c = Edges::from(edges[i]).cross(&beam, corners, plane, ray.t_min, t_max);
                 let hit = match filter {
                     Some(filter) => filtered(filter, packet, c.mask, &c, row.id),
                     None => c.mask,
