@@ -1,6 +1,8 @@
 //! Every backend finds the hit that brute finds, to the last bit or, Embree, up to rounding; nothing leaks through closed
 //! surfaces.
 
+mod instances;
+
 use crate::support::{Random, crowd, geometry, grid, hills, side_by_side, soup, sphere};
 use gonio_accel::{
     Accel, Brute, Geometry, GeometryError, Hit, Hit8, Intersect, Mesh, Obvhs, ObvhsOptions, Opacity, Ray8, RayKind,

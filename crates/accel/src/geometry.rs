@@ -88,6 +88,11 @@ impl Order {
         self.starts.last().map_or(0, |&count| count as usize)
     }
 
+    /// The places of an instance's triangles.
+    pub(crate) fn places(&self, instance: usize) -> std::ops::Range<u32> {
+        self.starts[instance]..self.starts[instance + 1]
+    }
+
     /// The triangle at a place below the number of all.
     #[inline]
     pub(crate) fn id(&self, index: u32) -> TriangleId {

@@ -39,7 +39,7 @@ pub use brute::Brute;
 #[cfg(feature = "embree")]
 pub use embree::{Embree, EmbreeError, EmbreeOptions, EmbreeQuality, EmbreeWidth};
 pub use geometry::{Geometry, GeometryError, Instance, Mesh, TriangleId, WorldTriangle};
-pub use obvhs::{Obvhs, ObvhsOptions, ObvhsPreset, TreeError};
+pub use obvhs::{Obvhs, ObvhsOptions, ObvhsPreset, Sharing, TreeError};
 pub use ray::{Hit, Hit8, NO_HIT, Opacity, Ray8, RayKind};
 pub use triangle::Intersect;
 

@@ -6,6 +6,7 @@
 //!   the cheapest way; [`order`] says what a ray that looks for any hit visits first, and [`check`] whether all of it is sound.
 //! - Rays that have nothing in common walk alone, many at a time ([`flight`]); rays of a camera walk as tiles ([`tile`]).
 //!   Those that look for any hit first try the triangles that blocked the last ones ([`occluders`]).
+//! - A mesh that is placed many times may keep one tree, in its own coordinates ([`placed`]).
 //! - So few triangles that a tree does not pay are kept in a list ([`few`]).
 //!
 //! None of this changes a result: all share the test of [`crate::triangle`], whose hits do not depend on the order of visits. The
@@ -20,6 +21,7 @@ mod flight;
 mod occluders;
 mod order;
 mod pages;
+mod placed;
 mod sah;
 mod stack;
 mod tile;
@@ -27,7 +29,7 @@ mod tree;
 
 use crate::Accel;
 use crate::brute::scalar_hit;
-use crate::geometry::{Geometry, TriangleId};
+use crate::geometry::{Geometry, Instance, TriangleId};
 use crate::ray::{Hit, Hit8, NO_HIT, Opacity, Ray8, RayKind};
 use crate::triangle::{Beam, Crossing, Intersect, barycentric};
 pub use check::TreeError;
@@ -35,6 +37,7 @@ use few::Few;
 use flight::{Quest, Walk};
 use gonio_kernel::{F32x8, Mask8};
 use occluders::Occluders;
+use placed::Way;
 use tree::{Cell, Tree};
 
 /// A tree of eight-wide nodes over the triangles of a geometry, or a list of a few.
@@ -59,6 +62,43 @@ pub enum ObvhsPreset {
     High,
 }
 
+/// Which instances share the tree of their mesh, instead of being laid out in the world. No hit depends on it. A shared tree saves
+/// memory and time to build; rays take longer, because boxes of instances overlap and a block's corners are moved to the
+/// world whenever a ray comes to it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sharing {
+    /// Those of meshes that are placed more than once, if all instances together have more than four million triangles.
+    #[default]
+    Large,
+    /// None.
+    Never,
+    /// All, as far as their maps can be inverted.
+    Always,
+}
+
+impl Sharing {
+    /// More triangles than that are not laid out if they need not be: a quarter of a gigabyte.
+    const LARGE: usize = 1 << 22;
+
+    /// For each instance that shares a tree, the way to its mesh.
+    fn ways(self, geometry: &Geometry) -> Vec<Option<Way>> {
+        let mut uses = vec![0; geometry.meshes().len()];
+        geometry.instances().iter().for_each(|instance| uses[instance.mesh as usize] += 1);
+        let is_large = geometry.triangle_count() > Self::LARGE;
+        let way = |instance: &Instance| {
+            let mesh = instance.mesh as usize;
+            let shares = match self {
+                Self::Large => is_large && uses[mesh] > 1,
+                Self::Never => false,
+                Self::Always => true,
+            };
+            let is_empty = geometry.meshes()[mesh].triangles.is_empty();
+            (shares && !is_empty).then(|| Way::to(instance)).flatten()
+        };
+        geometry.instances().iter().map(way).collect()
+    }
+}
+
 /// How a tree is built and rays are tested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ObvhsOptions {
@@ -66,6 +106,8 @@ pub struct ObvhsOptions {
     pub intersect: Intersect,
     /// How much time is spent to build.
     pub preset: ObvhsPreset,
+    /// Which instances share a tree.
+    pub sharing: Sharing,
 }
 
 impl Obvhs {
@@ -78,13 +120,13 @@ impl Obvhs {
     pub fn with(geometry: &Geometry, options: ObvhsOptions, progress: &mut dyn FnMut(usize)) -> Self {
         Self(match Few::of(geometry) {
             Some(few) => Structure::List(few),
-            None => Structure::Tree(Tree::build(geometry, options.preset, progress), options.intersect),
+            None => Structure::Tree(Tree::build(geometry, &options, progress), options.intersect),
         })
     }
 
     /// Builds a tree even where a list would be faster: for tests of the tree.
     pub fn always_tree(geometry: &Geometry, options: ObvhsOptions) -> Self {
-        Self(Structure::Tree(Tree::build(geometry, options.preset, &mut |_| ()), options.intersect))
+        Self(Structure::Tree(Tree::build(geometry, &options, &mut |_| ()), options.intersect))
     }
 
     /// Bytes of nodes and triangles together, without the geometry that they were made from.
@@ -226,18 +268,24 @@ impl Tree {
         let count = rays.len().min(hits.len());
         let (rays, hits) = (&rays[..count], &mut hits[..count]);
         hits.fill(Hit8::miss());
+        let alone = |rays: &[Ray8], hits: &mut [Hit8]| self.fly::<FAST, _>(rays, &mut Nearest { tree: self, hits });
         match kind {
-            RayKind::Coherent => self.view().closest_in_tiles::<FAST>(rays, hits, |rays, hits| {
-                self.view().fly::<FAST, _>(rays, &mut Nearest { tree: self, hits });
-            }),
-            RayKind::Incoherent => self.view().fly::<FAST, _>(rays, &mut Nearest { tree: self, hits }),
+            RayKind::Coherent => self.view().closest_in_tiles::<FAST>(rays, hits, alone),
+            RayKind::Incoherent => alone(rays, hits),
         }
     }
 
     fn occluded<const FAST: bool>(&self, rays: &[Ray8], filter: Option<&dyn Opacity>, blocked: &mut [Mask8]) {
         let count = rays.len().min(blocked.len());
         blocked[..count].fill(Mask8::from_bits(0));
-        self.view()
-            .fly::<FAST, _>(&rays[..count], &mut Any { tree: self, filter, blocked, occluders: Occluders::default() });
+        self.fly::<FAST, _>(&rays[..count], &mut Any { tree: self, filter, blocked, occluders: Occluders::default() });
+    }
+
+    fn fly<const FAST: bool, Q: Quest>(&self, rays: &[Ray8], quest: &mut Q) {
+        if self.placed.is_empty() {
+            self.view().fly::<FAST, false, Q>(rays, quest);
+        } else {
+            self.view().fly::<FAST, true, Q>(rays, quest);
+        }
     }
 }

@@ -55,10 +55,10 @@ const U: f32 = 1.0 / 16_777_216.0;
 pub const PAD: f32 = 16.0 * U;
 
 /// And by this times the origin's coordinate: origin/d and what is added to it are rounded once each.
-const OFFSET_ERROR: f32 = 4.0 * U;
+const OFFSET_ERROR: f64 = 4.0 / 16_777_216.0;
 
 /// The inverse of a direction's component is at most this: times a coordinate of 1e18 it is still finite.
-const STEEPEST: f32 = 1e18;
+const STEEPEST: f64 = 1e18;
 
 /// Error bound of n·(v₀ − o), and of n·d, in units of the sum of its absolute products: three roundings for the edges and
 /// the difference, two for the cross product, three for the dot product.
@@ -105,6 +105,39 @@ impl Beam<f32> {
             reach: F32x8::splat(self.reach),
         }
     }
+
+    /// The same ray for boxes in other coordinates, where it starts at `origin` and goes by `dir` per unit of t, up to an error
+    /// along each axis. Triangles cannot be tested with it.
+    pub(crate) fn moved(&self, origin: Vec3<f32>, dir: Vec3<f32>, error: Vec3<f32>) -> Self {
+        let [inverse, enter, leave] = slabs(origin, dir, error);
+        Self { origin, dir, inverse, enter, leave, ..*self }
+    }
+}
+
+impl<R: Real> Beam<R> {
+    /// Where the rays start.
+    #[inline(always)]
+    pub fn origin(&self) -> Vec3<R> {
+        self.origin
+    }
+
+    /// Where they go.
+    #[inline(always)]
+    pub(crate) fn dir(&self) -> Vec3<R> {
+        self.dir
+    }
+
+    /// One over each component of the directions, finite.
+    #[inline(always)]
+    pub fn inverse(&self) -> Vec3<R> {
+        self.inverse
+    }
+
+    /// The distance to the farthest corner of the scene, at most.
+    #[inline(always)]
+    pub(crate) fn reach(&self) -> R {
+        self.reach
+    }
 }
 
 impl Beam {
@@ -113,14 +146,7 @@ impl Beam {
         let (u, v) = tangents(dir);
         let (to_lo, to_hi) = ((Vec3::broadcast(lo) - origin).abs(), (Vec3::broadcast(hi) - origin).abs());
         let reach = to_lo.x.max(to_hi.x) + to_lo.y.max(to_hi.y) + to_lo.z.max(to_hi.z);
-        // A direction without an x never leaves its slab: a large finite slope says so without 0·∞.
-        let slope = |d: F32x8| d.abs().recip().min(F32x8::splat(STEEPEST)).copysign(d);
-        let inverse = Vec3::new(slope(dir.x), slope(dir.y), slope(dir.z));
-        let pad = |i: F32x8, o: F32x8| i.abs() * o.abs().mul_add(F32x8::splat(OFFSET_ERROR), reach * F32x8::splat(PAD));
-        let pad = Vec3::new(pad(inverse.x, origin.x), pad(inverse.y, origin.y), pad(inverse.z, origin.z));
-        let offset = Vec3::new(inverse.x * origin.x, inverse.y * origin.y, inverse.z * origin.z);
-        let enter = Vec3::new(-offset.x - pad.x, -offset.y - pad.y, -offset.z - pad.z);
-        let leave = pad - offset;
+        let [inverse, enter, leave] = slabs(origin, dir, Vec3::splat(reach * F32x8::splat(PAD)));
         Self { origin, dir, across: [u, v], inverse, enter, leave, reach }
     }
 
@@ -152,18 +178,6 @@ impl Beam {
         [self.inverse.x, self.inverse.y, self.inverse.z].map(|i| i.lt(F32x8::ZERO).to_bits())
     }
 
-    /// Where the rays start.
-    #[inline(always)]
-    pub fn origin(&self) -> Vec3<F32x8> {
-        self.origin
-    }
-
-    /// One over each component of the directions, finite.
-    #[inline(always)]
-    pub fn inverse(&self) -> Vec3<F32x8> {
-        self.inverse
-    }
-
     /// By how much slab intervals are padded at either end, along each axis.
     #[inline(always)]
     pub fn pad(&self) -> Vec3<F32x8> {
@@ -186,6 +200,23 @@ impl Beam {
             [far.x.mul_add(i.x, self.leave.x), far.y.mul_add(i.y, self.leave.y), far.z.mul_add(i.z, self.leave.z)];
         [enter[0].max(enter[1]).max(enter[2]), leave[0].min(leave[1]).min(leave[2])]
     }
+}
+
+/// What slab intervals need of rays whose points are known up to an error along each axis: the inverse directions, and what is
+/// added for near and for far planes.
+#[inline(always)]
+fn slabs<R: Real>(origin: Vec3<R>, dir: Vec3<R>, error: Vec3<R>) -> [Vec3<R>; 3] {
+    // A direction without an x never leaves its slab: a large finite slope says so without 0·∞.
+    let slope = |d: R| d.abs().recip().min(R::lit(STEEPEST)).copysign(d);
+    let inverse = Vec3::new(slope(dir.x), slope(dir.y), slope(dir.z));
+    let pad = |i: R, o: R, error: R| i.abs() * o.abs().mul_add(R::lit(OFFSET_ERROR), error);
+    let pad = Vec3::new(
+        pad(inverse.x, origin.x, error.x),
+        pad(inverse.y, origin.y, error.y),
+        pad(inverse.z, origin.z, error.z),
+    );
+    let offset = Vec3::new(inverse.x * origin.x, inverse.y * origin.y, inverse.z * origin.z);
+    [inverse, Vec3::new(-offset.x - pad.x, -offset.y - pad.y, -offset.z - pad.z), pad - offset]
 }
 
 /// Where rays meet triangles, lane by lane.

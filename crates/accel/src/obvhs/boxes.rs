@@ -1,6 +1,5 @@
 //! Boxes for building: two corners in a vector register each, and a triangle's box together with its number.
 
-use crate::geometry::Geometry;
 use glam::Vec4;
 use gonio_kernel::Vec3;
 
@@ -65,11 +64,6 @@ impl Ref {
         bounds.lo.w = f32::from_bits(ONE | index & HALF);
         bounds.hi.w = f32::from_bits(ONE | index >> 16);
         Self(bounds)
-    }
-
-    /// A triangle of the geometry.
-    pub(super) fn of_triangle(geometry: &Geometry, index: u32) -> Self {
-        Self::new(Box3::of_points(geometry.world_triangle(index).corners), index)
     }
 
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use super::boxes::Box3;
 use super::stack::spread;
-use super::tree::{Child, Tree, WIDTH};
+use super::tree::{Cell, Child, Tree, WIDTH};
 use gonio_kernel::Vec3;
 use thiserror::Error;
 
@@ -33,6 +33,12 @@ pub enum TreeError {
         /// Its slot.
         slot: usize,
     },
+    /// A placed mesh has no entrance, or two, or reaches beyond its box.
+    #[error("entrance {entrance} is not there once, or the mesh behind it reaches beyond its box")]
+    Entrance {
+        /// The number of the entrance.
+        entrance: usize,
+    },
     /// An order of children leaves one out.
     #[error("cell {cell}: the order of octant {octant} is none")]
     Order {
@@ -51,34 +57,84 @@ pub enum TreeError {
     },
 }
 
+/// What has been seen of a tree so far.
+struct Seen {
+    /// How often each cell was reached,
+    cells: Vec<usize>,
+    /// and each entrance.
+    entrances: Vec<usize>,
+    /// The most that waits when an entrance is visited.
+    waits: usize,
+}
+
 impl Tree {
-    /// Looks at every cell: O(n).
+    /// Looks at every cell, and at every triangle of every instance: O(n).
     pub(super) fn check(&self) -> Result<(), TreeError> {
-        let mut cells = vec![0_usize; self.cell_count()];
+        let mut seen = Seen { cells: vec![0; self.cell_count()], entrances: vec![0; self.placed.len()], waits: 1 };
         let mut triangles = vec![0_usize; self.order.count()];
+        self.check_below(self.root, 1, &mut seen, &mut |block| {
+            block.lanes_used().for_each(|lane| triangles[block.index(lane) as usize] += 1);
+        })?;
+        let mut blocks: Vec<Cell<'_>> = Vec::new();
+        for (number, placed) in self.placed.iter().enumerate() {
+            if number == 0 || placed.root != self.placed[number - 1].root {
+                blocks.clear();
+                let waits = seen.waits + 1; // the exit
+                self.check_below(placed.root, waits, &mut seen, &mut |block| blocks.push(block))?;
+            }
+            for block in &blocks {
+                let rows = placed.in_world(*block);
+                let block = Cell::of(&rows);
+                block.lanes_used().for_each(|lane| triangles[block.index(lane) as usize] += 1);
+                if !placed.bounds.contains(block.bounds()) {
+                    return Err(TreeError::Entrance { entrance: number });
+                }
+            }
+        }
+        if let Some(entrance) = seen.entrances.iter().position(|&times| times != 1) {
+            return Err(TreeError::Entrance { entrance });
+        }
+        if let Some(cell) = seen.cells.iter().position(|&times| times != 1) {
+            return Err(TreeError::NotOnce { cell, times: seen.cells[cell] });
+        }
+        match triangles.iter().position(|&times| times != 1) {
+            Some(triangle) => Err(TreeError::Triangle { triangle, times: triangles[triangle] }),
+            None => Ok(()),
+        }
+    }
+
+    /// Looks at every cell below one, when so many wait already.
+    fn check_below<'a>(
+        &'a self,
+        root: Child,
+        waits: usize,
+        seen: &mut Seen,
+        visit: &mut dyn FnMut(Cell<'a>),
+    ) -> Result<(), TreeError> {
         // (child, what waits when it is visited, who it is)
-        let mut work = vec![(self.root, 1, None)];
+        let mut work = vec![(root, waits, None)];
         while let Some((child, waits, parent)) = work.pop() {
             let place = child.place();
             let beyond = |(cell, slot, _): (usize, usize, Box3)| TreeError::Box { cell, slot };
-            let Some(times) = cells.get_mut(place) else {
+            let times = match child.is_entrance() {
+                true => seen.entrances.get_mut(child.number()),
+                false => seen.cells.get_mut(place),
+            };
+            let Some(times) = times else {
                 return Err(parent.map_or(TreeError::NotOnce { cell: place, times: 0 }, beyond));
             };
             *times += 1;
             if *times > 1 {
                 return Err(TreeError::NotOnce { cell: place, times: *times });
             }
-            let cell = self.cell(child);
-            let bounds = if child.is_leaf() {
-                let used = (0..WIDTH).filter(|lane| cell.used() >> lane & 1 != 0);
-                used.clone().for_each(|lane| triangles[cell.index(lane) as usize] += 1);
-                let corner = |lane: usize, c: usize| {
-                    let v = cell.corners()[c];
-                    Vec3::new(v.x.lane(lane), v.y.lane(lane), v.z.lane(lane))
-                };
-                Box3::of_points(used.flat_map(|lane| (0..3).map(move |c| corner(lane, c))))
+            let bounds = if child.is_entrance() {
+                seen.waits = seen.waits.max(waits);
+                self.placed[child.number()].bounds
+            } else if child.is_leaf() {
+                visit(self.view().cell(child));
+                self.cell(child).bounds()
             } else {
-                let slots: Vec<_> = cell.slots().collect();
+                let slots: Vec<_> = self.cell(child).slots().collect();
                 if waits - 1 + slots.len() + WIDTH > self.stack_size() {
                     let needed = waits - 1 + slots.len() + WIDTH;
                     return Err(TreeError::Stack { needed, room: self.stack_size() });
@@ -96,13 +152,7 @@ impl Tree {
                 return Err(beyond(parent));
             }
         }
-        if let Some(cell) = cells.iter().position(|&times| times != 1) {
-            return Err(TreeError::NotOnce { cell, times: cells[cell] });
-        }
-        match triangles.iter().position(|&times| times != 1) {
-            Some(triangle) => Err(TreeError::Triangle { triangle, times: triangles[triangle] }),
-            None => Ok(()),
-        }
+        Ok(())
     }
 
     fn check_orders(&self, node: Child) -> Result<(), TreeError> {
@@ -114,5 +164,21 @@ impl Tree {
             }
         }
         Ok(())
+    }
+}
+
+impl Cell<'_> {
+    fn lanes_used(&self) -> impl Iterator<Item = usize> + Clone + use<> {
+        let used = self.used();
+        (0..WIDTH).filter(move |lane| used >> lane & 1 != 0)
+    }
+
+    /// The box of a block's triangles.
+    fn bounds(&self) -> Box3 {
+        let corner = |lane: usize, c: usize| {
+            let v = self.corners()[c];
+            Vec3::new(v.x.lane(lane), v.y.lane(lane), v.z.lane(lane))
+        };
+        Box3::of_points(self.lanes_used().flat_map(|lane| (0..3).map(move |c| corner(lane, c))))
     }
 }

@@ -10,7 +10,11 @@
 //! Their order is that of the ray's octant, computed when the tree was built (compare Ylitie, Karras & Laine 2017, "Efficient
 //! Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs"). For rays that look for any hit it is the order in which one is
 //! likeliest to be found ([`super::order`]).
+//!
+//! Only a tree with entrances ([`super::placed`]) has rays that are inside of one: what they were outside is kept beside them, and the
+//! way out lies on their stack. Other trees are walked by code that knows nothing of it.
 
+use super::placed::{Placed, candidates};
 use super::stack::Stack;
 use super::tree::{Cell, Child, Facing, Slots, View};
 use crate::ray::{NO_HIT, Ray8};
@@ -71,6 +75,16 @@ impl Walk {
     }
 }
 
+/// What a ray in the tree of a placed mesh was in the world.
+#[derive(Clone)]
+struct Home {
+    /// Which instance it is in, if it is in one.
+    inside: Option<usize>,
+    beam: Beam<f32>,
+    facing: Facing,
+    slack: f32,
+}
+
 /// The rays of a slice, one after the other.
 struct Queue<'a> {
     rays: &'a [Ray8],
@@ -85,18 +99,19 @@ struct Queue<'a> {
 }
 
 impl View<'_> {
-    /// Sends all live rays through the tree.
-    pub(super) fn fly<const FAST: bool, Q: Quest>(&self, rays: &[Ray8], quest: &mut Q) {
+    /// Sends all live rays through the tree, which may have entrances if `PLACED`.
+    pub(super) fn fly<const FAST: bool, const PLACED: bool, Q: Quest>(&self, rays: &[Ray8], quest: &mut Q) {
         let size = self.tree.stack_size();
         let mut stacks = Stack::with_room(FLIGHT * size);
         let Some(first) = rays.first() else { return };
         let beam = Beam::new(first.origin, first.dir, self.tree.lo, self.tree.hi);
         let mut queue = Queue { rays, begun: 0, left: 0, beam, down: [0; 3] };
         let mut walks: [Walk; FLIGHT] = std::array::from_fn(|i| Walk::nowhere(beam.lane(0), i * size));
+        let mut homes = if PLACED { vec![Home::of(&walks[0]); FLIGHT] } else { Vec::new() };
         let mut next = Next::default();
         for (i, walk) in walks.iter_mut().enumerate() {
             if self.take::<FAST, Q>(&mut queue, walk, quest) {
-                next.goes_to(1 << i, walk.next);
+                next.goes_to::<PLACED>(1 << i, walk.next);
             }
         }
         while next.any() {
@@ -104,24 +119,46 @@ impl View<'_> {
             for_each_bit(now.node, |i, bit| {
                 let walk = &mut walks[i];
                 walk.visit::<Q>(self.cell(walk.next), &mut stacks);
-                self.pop::<Q>(bit, walk, &stacks, &mut next);
+                self.pop::<PLACED, Q>(bit, walk, &stacks, &mut next);
             });
             for_each_bit(now.block, |i, bit| {
                 let walk = &mut walks[i];
                 let block = self.cell(walk.next);
-                let crossing = test::<FAST>(&walk.beam.splat(), &block.corners(), walk.t_min, walk.t_best);
-                if crossing.mask.to_bits() != 0 && quest.meet(walk, &crossing, block) {
+                let is_done = match homes.get(i) {
+                    Some(Home { inside: Some(number), beam, .. }) if PLACED => {
+                        let any = candidates(block, &walk.beam, &walk.facing, walk.from, walk.until) != 0;
+                        any && walk.meet::<FAST, Q>(beam, Cell::of(&self.tree.placed[*number].in_world(block)), quest)
+                    }
+                    _ => walk.meet::<FAST, Q>(&{ walk.beam }, block, quest),
+                };
+                if is_done {
                     next.done |= bit;
                 } else {
-                    self.pop::<Q>(bit, walk, &stacks, &mut next);
+                    self.pop::<PLACED, Q>(bit, walk, &stacks, &mut next);
                 }
             });
-            for_each_bit(now.nothing, |i, bit| self.pop::<Q>(bit, &mut walks[i], &stacks, &mut next));
+            for_each_bit(now.nothing, |i, bit| self.pop::<PLACED, Q>(bit, &mut walks[i], &stacks, &mut next));
+            if PLACED {
+                for_each_bit(now.entrance, |i, bit| {
+                    let (walk, home) = (&mut walks[i], &mut homes[i]);
+                    if walk.next == Child::EXIT {
+                        walk.leave(home);
+                        self.pop::<PLACED, Q>(bit, walk, &stacks, &mut next);
+                    } else {
+                        *home = Home::of(walk);
+                        walk.enter(home, walk.next.number(), &self.tree.placed, &mut stacks);
+                        next.goes_to::<PLACED>(bit, walk.next);
+                    }
+                });
+            }
             for_each_bit(std::mem::take(&mut next.done), |i, bit| {
                 let walk = &mut walks[i];
                 quest.done(walk);
+                if PLACED {
+                    homes[i].inside = None;
+                }
                 if self.take::<FAST, Q>(&mut queue, walk, quest) {
-                    next.goes_to(bit, walk.next);
+                    next.goes_to::<PLACED>(bit, walk.next);
                 }
             });
         }
@@ -140,8 +177,7 @@ impl View<'_> {
         walk.ray = packet * F32x8::LANES + lane;
         walk.beam = queue.beam.lane(lane);
         (walk.t_min, walk.t_best) = (queue.rays[packet].t_min.lane(lane), queue.rays[packet].t_max.lane(lane));
-        walk.slack = queue.beam.slack::<FAST>().lane(lane);
-        (walk.from, walk.until) = (walk.t_min - walk.slack, walk.t_best + walk.slack);
+        walk.see_as_far_as(queue.beam.slack::<FAST>().lane(lane));
         (walk.index, walk.top, walk.next) = (NO_HIT, walk.base, self.tree.root);
         true
     }
@@ -166,20 +202,20 @@ impl View<'_> {
 
     /// Takes the next subtree from a ray's stack and has it fetched.
     #[inline(always)]
-    fn pop<Q: Quest>(&self, bit: u32, walk: &mut Walk, stacks: &Stack, next: &mut Next) {
+    fn pop<const PLACED: bool, Q: Quest>(&self, bit: u32, walk: &mut Walk, stacks: &Stack, next: &mut Next) {
         let is_empty = walk.top == walk.base;
         let top = walk.top - usize::from(!is_empty);
         let child = Child(stacks.children[top]);
         // Not <: a tie may lie behind this box and have the smaller index.
         let counts = Q::ANY || stacks.nears[top] <= walk.until;
         (walk.top, walk.next) = (top, child);
-        self.prefetch(child);
+        if !(PLACED && child.is_entrance()) {
+            self.prefetch(child);
+        }
         let [waits, counts] = [!is_empty, counts].map(|is| if is { bit } else { 0 });
         next.done |= bit & !waits;
         next.nothing |= waits & !counts;
-        let (visit, block) = (waits & counts, child.all_ones_if_leaf());
-        next.node |= visit & !block;
-        next.block |= visit & block;
+        next.goes_to::<PLACED>(waits & counts, child);
     }
 }
 
@@ -188,6 +224,8 @@ impl View<'_> {
 struct Next {
     node: u32,
     block: u32,
+    /// An entrance, or the exit.
+    entrance: u32,
     /// What it took from its stack lies behind its hit.
     nothing: u32,
     /// Its stack is empty.
@@ -196,14 +234,17 @@ struct Next {
 
 impl Next {
     #[inline(always)]
-    fn goes_to(&mut self, bit: u32, child: Child) {
-        self.node |= bit & !child.all_ones_if_leaf();
-        self.block |= bit & child.all_ones_if_leaf();
+    fn goes_to<const PLACED: bool>(&mut self, bit: u32, child: Child) {
+        let leaf = child.all_ones_if_leaf();
+        let entrance = if PLACED && child.is_entrance() { bit } else { 0 };
+        self.node |= bit & !leaf;
+        self.block |= bit & leaf & !entrance;
+        self.entrance |= entrance;
     }
 
     #[inline(always)]
     fn any(&self) -> bool {
-        self.node | self.block | self.nothing != 0
+        self.node | self.block | self.entrance | self.nothing != 0
     }
 }
 
@@ -221,7 +262,45 @@ pub(super) fn sound(ray: &Ray8) -> Mask8 {
     ray.mask & finite(ray.origin) & finite(ray.dir)
 }
 
+impl Home {
+    fn of(walk: &Walk) -> Self {
+        Self { inside: None, beam: walk.beam, facing: walk.facing, slack: walk.slack }
+    }
+}
+
 impl Walk {
+    /// Goes on in the tree of a placed mesh, with the way out on the stack.
+    fn enter(&mut self, home: &mut Home, number: usize, placed: &[Placed], stacks: &mut Stack) {
+        let placed = &placed[number];
+        home.inside = Some(number);
+        self.beam = placed.enter(&home.beam);
+        let inverse = <[f32; 3]>::from(self.beam.inverse());
+        self.facing = Facing::of(inverse.map(|i| usize::from(i < 0.0)));
+        self.see_as_far_as(placed.slack(home.slack));
+        (stacks.children[self.top], stacks.nears[self.top]) = (Child::EXIT.0, f32::NEG_INFINITY);
+        self.top += 1;
+        self.next = placed.root;
+    }
+
+    /// Comes back to the world.
+    fn leave(&mut self, home: &mut Home) {
+        (self.beam, self.facing) = (home.beam, home.facing);
+        self.see_as_far_as(home.slack);
+        home.inside = None;
+    }
+
+    fn see_as_far_as(&mut self, slack: f32) {
+        self.slack = slack;
+        (self.from, self.until) = (self.t_min - slack, self.t_best + slack);
+    }
+
+    /// Tests the ray, whose beam in the world it is given, against a block of the world; true if it need not go on.
+    #[inline(always)]
+    fn meet<const FAST: bool, Q: Quest>(&mut self, beam: &Beam<f32>, block: Cell<'_>, quest: &mut Q) -> bool {
+        let crossing = test::<FAST>(&beam.splat(), &block.corners(), self.t_min, self.t_best);
+        crossing.mask.to_bits() != 0 && quest.meet(self, &crossing, block)
+    }
+
     fn nowhere(beam: Beam<f32>, base: usize) -> Self {
         Self {
             ray: 0,

@@ -11,7 +11,7 @@ use super::tree::{Cell, Child, Tree};
 use gonio_kernel::{F32x8, Real};
 
 /// What a search below a node or block comes to, given that the ray enters its box.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Odds {
     /// The chance of a hit.
     hit: f32,
@@ -23,16 +23,24 @@ pub(super) struct Odds {
 pub(super) fn settle(tree: &mut Tree, nodes: &[Child], odds: &mut Vec<Odds>) {
     odds.resize(tree.cell_count(), Odds { hit: 0.0, cost: 0.0 });
     for &node in nodes.iter().rev().filter(|node| !node.is_leaf()) {
-        let below = |bounds, child: Child| {
-            if child.is_leaf() { of_block(tree.cell(child), bounds) } else { odds[child.0 as usize] }
-        };
-        let slots = tree.cell(node).slots().map(|(bounds, child)| (bounds, child, below(bounds, child)));
+        let slots = tree.cell(node).slots().map(|(bounds, child)| (bounds, child, below(tree, odds, child, bounds)));
         let mut slots: Vec<(Box3, Child, Odds)> = slots.collect();
         let worth = |o: &Odds| o.hit / o.cost;
         slots.sort_by(|a, b| worth(&a.2).total_cmp(&worth(&b.2)));
         odds[node.0 as usize] = of_node(&slots);
         let children: Vec<(Box3, Child)> = slots.iter().map(|s| (s.0, s.1)).collect();
         tree.settle_node(node, &children);
+    }
+}
+
+/// The odds of a child in its box; a node has its own already.
+pub(super) fn below(tree: &Tree, odds: &[Odds], child: Child, bounds: Box3) -> Odds {
+    if child.is_entrance() {
+        tree.placed[child.number()].odds
+    } else if child.is_leaf() {
+        of_block(tree.cell(child), bounds)
+    } else {
+        odds[child.place()]
     }
 }
 

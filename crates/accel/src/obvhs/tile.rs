@@ -7,7 +7,7 @@
 //! against the block's own box, after the tile was tested against the boxes of the triangles. Where many of a packet's eight rays
 //! enter, they are tested against one triangle after the other; where few do, each ray against all eight triangles at once.
 //!
-//! Rays that do not share their octant go on alone ([`super::flight`]), and so do the rays of a tile that finds itself
+//! Rays that do not share their octant, or come to a tree with entrances, go on alone ([`super::flight`]), and so do the rays of a tile that finds itself
 //! at many blocks which few of them enter: far away, or in a small picture, neighbours have nothing in common. After such a
 //! tile ever fewer are tried. Every test of a triangle is the same, so results are too.
 
@@ -213,7 +213,7 @@ impl View<'_> {
         hits: &mut [Hit8],
         mut alone: impl FnMut(&[Ray8], &mut [Hit8]),
     ) {
-        let fits = !self.tree.root.is_leaf() && self.tree.cell_count() <= MOST_CELLS;
+        let fits = !self.tree.root.is_leaf() && self.tree.cell_count() <= MOST_CELLS && self.tree.placed.is_empty();
         let Some(first) = rays.first().filter(|_| fits) else { return alone(rays, hits) };
         let mut stack = Stack::with_room(self.tree.stack_size());
         let mut packets = [Packet::new::<FAST>(first, self.tree); PACKETS];

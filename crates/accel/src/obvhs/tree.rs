@@ -7,12 +7,15 @@
 
 use super::boxes::{Box3, Ref};
 use super::collapse::Collapse;
+use super::order::Odds;
 use super::pages::{Pages, Rows};
+use super::placed::{Placed, Shared, local_triangle};
 use super::stack::{packed, spread, together};
-use super::{ObvhsPreset, bridge, order, sah};
+use super::{ObvhsOptions, ObvhsPreset, bridge, order, sah};
 use crate::geometry::{Geometry, Order};
 use glam::Vec4;
 use gonio_kernel::{F32x8, Mask8, Real, U32x8, Vec3};
+use std::ops::Range;
 use wide::f32x8;
 
 /// How many children a node has, and how many triangles a block.
@@ -27,7 +30,30 @@ pub(super) struct Child(pub(super) u32);
 
 const LEAF: u32 = 1 << 31;
 
+/// A leaf that is an entrance to the tree of a mesh, see [`super::placed`]. A tree has fewer than 2³⁰ cells.
+const ENTRANCE: u32 = LEAF | 1 << 30;
+
 impl Child {
+    /// The way out of a mesh's tree.
+    pub(super) const EXIT: Self = Self(u32::MAX);
+
+    /// The entrance of that number.
+    fn entrance(number: usize) -> Self {
+        Self(ENTRANCE | number as u32)
+    }
+
+    /// Whether it is an entrance, or the exit.
+    #[inline(always)]
+    pub(super) fn is_entrance(self) -> bool {
+        self.0 >= ENTRANCE
+    }
+
+    /// The number of an entrance.
+    #[inline(always)]
+    pub(super) fn number(self) -> usize {
+        (self.0 & !ENTRANCE) as usize
+    }
+
     #[inline(always)]
     pub(super) fn is_leaf(self) -> bool {
         self.0 & LEAF != 0
@@ -56,7 +82,13 @@ impl Child {
 #[derive(Clone, Copy)]
 pub(super) struct Cell<'a>(&'a Rows);
 
-impl Cell<'_> {
+impl<'a> Cell<'a> {
+    /// A block that is not one of the tree's.
+    #[inline(always)]
+    pub(super) fn of(rows: &'a Rows) -> Self {
+        Self(rows)
+    }
+
     /// A plane of the boxes; rows beyond the planes for numbers from 6 on, which are taken modulo 8.
     #[inline(always)]
     pub(super) fn plane(self, row: usize) -> F32x8 {
@@ -136,7 +168,13 @@ impl Facing {
     /// The near and the far planes of a node's children.
     #[inline(always)]
     pub(super) fn planes(&self, node: Cell<'_>) -> [Vec3<F32x8>; 2] {
-        [self.near, self.far].map(|[x, y, z]| Vec3::new(node.plane(x), node.plane(y), node.plane(z)))
+        self.planes_of(|row| node.plane(row))
+    }
+
+    /// The near and the far planes of boxes whose rows are as those of a node.
+    #[inline(always)]
+    pub(super) fn planes_of(&self, plane: impl Fn(usize) -> F32x8) -> [Vec3<F32x8>; 2] {
+        [self.near, self.far].map(|[x, y, z]| Vec3::new(plane(x), plane(y), plane(z)))
     }
 }
 
@@ -146,6 +184,8 @@ pub(super) struct Tree {
     cells: Pages,
     pub(super) root: Child,
     pub(super) order: Order,
+    /// Instances that share the tree of their mesh, by the numbers of their entrances.
+    pub(super) placed: Vec<Placed>,
     pub(super) lo: Vec3<f32>,
     pub(super) hi: Vec3<f32>,
     depth: usize,
@@ -153,63 +193,56 @@ pub(super) struct Tree {
 
 impl Tree {
     /// The tree over all triangles; `progress` is told how many are done.
-    pub(super) fn build(geometry: &Geometry, preset: ObvhsPreset, progress: &mut dyn FnMut(usize)) -> Self {
-        Self::in_parts(geometry, preset, PART, progress)
+    pub(super) fn build(geometry: &Geometry, options: &ObvhsOptions, progress: &mut dyn FnMut(usize)) -> Self {
+        Self::in_parts(geometry, options, PART, progress)
     }
 
     /// The tree in parts of at most so many triangles.
-    fn in_parts(geometry: &Geometry, preset: ObvhsPreset, most: usize, progress: &mut dyn FnMut(usize)) -> Self {
+    fn in_parts(geometry: &Geometry, options: &ObvhsOptions, most: usize, progress: &mut dyn FnMut(usize)) -> Self {
         let none = Vec3::splat(0.0);
         let order = geometry.order().clone();
-        let mut tree = Self { cells: Pages::default(), root: Child(0), order, lo: none, hi: none, depth: 1 };
-        let mut refs: Vec<Ref> = (0..geometry.triangle_count() as u32).map(|i| Ref::of_triangle(geometry, i)).collect();
-        let mut roots = Vec::new();
-        let mut odds = Vec::new();
-        let mut parts = Vec::new();
-        let mut start = 0;
-        for end in sah::split(&mut refs, most) {
-            let part = &mut refs[start..end];
-            let binary = match preset {
-                ObvhsPreset::Fast => bridge::ploc(part),
-                ObvhsPreset::Medium => sah::build(part),
-                ObvhsPreset::High => bridge::reinserted(sah::build(part)),
-            };
-            if let Some(root) = binary.first() {
-                parts.push(Ref::new(root.bounds(), roots.len() as u32));
-                let leaf = |tree: &mut Self, node: usize| tree.block(geometry, &triangles(&binary, node));
-                let nodes = Collapse::new(&binary, WIDTH).run(&mut tree, leaf);
-                order::settle(&mut tree, &nodes, &mut odds);
-                roots.push(nodes[0]);
+        let mut tree =
+            Self { cells: Pages::default(), root: Child(0), order, placed: Vec::new(), lo: none, hi: none, depth: 0 };
+        let mut ways = options.sharing.ways(geometry);
+        let mut growth = Growth { tree: &mut tree, preset: options.preset, most, odds: Vec::new(), done: 0, progress };
+
+        let laid_out = (0..ways.len()).filter(|&instance| ways[instance].is_none());
+        let laid_out: Vec<_> = laid_out.map(|instance| geometry.order().places(instance)).collect();
+        let mut roots = growth.parts(&laid_out, |place| geometry.world_triangle(place).corners);
+        let mut below = std::mem::replace(&mut growth.tree.depth, 0);
+        for (number, mesh) in geometry.meshes().iter().enumerate() {
+            let of_it = |instance: usize| geometry.instances()[instance].mesh as usize == number;
+            let places: Vec<usize> = (0..ways.len()).filter(|&i| of_it(i) && ways[i].is_some()).collect();
+            if places.is_empty() {
+                continue;
             }
-            start = end;
-            progress(end);
+            let all = 0..mesh.triangles.len() as u32;
+            let parts = growth.parts(&[all], |prim| local_triangle(mesh, prim));
+            let root = growth.join(&parts);
+            below = below.max(std::mem::replace(&mut growth.tree.depth, 0));
+            let shared = Shared::new(mesh, root, growth.odds_of(root, bounds_of(&parts)));
+            for instance in places {
+                let Some(way) = ways[instance].take() else { continue };
+                let first = geometry.order().places(instance).start;
+                let placed = Placed::new(&geometry.instances()[instance], way, &shared, first);
+                roots.push((placed.bounds, Child::entrance(growth.tree.placed.len())));
+                growth.tree.placed.push(placed);
+            }
         }
-        let below = std::mem::replace(&mut tree.depth, 1);
-        let top = sah::build(&mut parts);
-        if let Some(root) = top.first() {
-            let bounds = root.bounds();
+        growth.tree.root = growth.join(&roots);
+        (growth.progress)(geometry.triangle_count());
+        if !roots.is_empty() {
+            let bounds = bounds_of(&roots);
             [tree.lo, tree.hi] = [bounds.lo, bounds.hi].map(|v| Vec3::new(v.x, v.y, v.z));
-        }
-        match roots[..] {
-            [] => {
-                tree.root = tree.new_node(1);
-                tree.settle_node(tree.root, &[]);
-            }
-            [root] => tree.root = root,
-            _ => {
-                let nodes = Collapse::new(&top, 1).run(&mut tree, |_, node| roots[top[node].first as usize]);
-                order::settle(&mut tree, &nodes, &mut odds);
-                tree.root = nodes[0];
-            }
         }
         tree.depth += below;
         tree.cells.settle();
         tree
     }
 
-    /// How many entries a traversal can have waiting at once, and room for eight more.
+    /// How many entries a traversal can have waiting at once, an exit among them, and room for eight more.
     pub(super) fn stack_size(&self) -> usize {
-        (WIDTH - 1) * self.depth + 1 + WIDTH
+        (WIDTH - 1) * self.depth + 2 + WIDTH
     }
 
     pub(super) fn cell(&self, child: Child) -> Cell<'_> {
@@ -223,7 +256,7 @@ impl Tree {
 
     /// Bytes that the tree occupies.
     pub(super) fn bytes(&self) -> usize {
-        size_of_val(self.cells.rows())
+        size_of_val(self.cells.rows()) + size_of_val(self.placed.as_slice())
     }
 
     /// How many nodes and blocks there are.
@@ -251,10 +284,10 @@ impl Tree {
     }
 
     /// Appends a block of triangles.
-    fn block(&mut self, geometry: &Geometry, triangles: &[u32]) -> Child {
+    fn block(&mut self, triangles: &[u32], corners: impl Fn(u32) -> [Vec3<f32>; 3]) -> Child {
         let (mut rows, mut index) = ([[0.0; WIDTH]; 9], [triangles[0]; WIDTH]);
         for (lane, &triangle) in triangles.iter().enumerate() {
-            let [a, b, c] = geometry.world_triangle(triangle).corners;
+            let [a, b, c] = corners(triangle);
             for (row, x) in rows.iter_mut().zip([a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z]) {
                 row[lane] = x;
             }
@@ -268,6 +301,79 @@ impl Tree {
         self.cells.push([ax, ay, az, bx, by, bz, cx, cy, cz, U32x8::new(index).as_real().0]);
         Child((self.cells.rows().len() - 1) as u32 | LEAF)
     }
+}
+
+/// A tree while it grows.
+struct Growth<'a> {
+    tree: &'a mut Tree,
+    preset: ObvhsPreset,
+    /// Most triangles of a part.
+    most: usize,
+    odds: Vec<Odds>,
+    /// How many triangles are done.
+    done: usize,
+    progress: &'a mut dyn FnMut(usize),
+}
+
+impl Growth<'_> {
+    /// Trees over parts of some triangles.
+    fn parts(&mut self, triangles: &[Range<u32>], corners: impl Fn(u32) -> [Vec3<f32>; 3]) -> Vec<(Box3, Child)> {
+        let mut refs = Vec::with_capacity(triangles.iter().map(|range| range.len()).sum());
+        let of = |triangle: u32| Ref::new(Box3::of_points(corners(triangle)), triangle);
+        refs.extend(triangles.iter().cloned().flatten().map(of));
+        let (mut roots, mut start) = (Vec::new(), 0);
+        for end in sah::split(&mut refs, self.most) {
+            let part = &mut refs[start..end];
+            let binary = match self.preset {
+                ObvhsPreset::Fast => bridge::ploc(part),
+                ObvhsPreset::Medium => sah::build(part),
+                ObvhsPreset::High => bridge::reinserted(sah::build(part)),
+            };
+            if let Some(root) = binary.first() {
+                let leaf = |tree: &mut Tree, node: usize| tree.block(&triangles_below(&binary, node), &corners);
+                roots.push((root.bounds(), self.settle(&binary, WIDTH, leaf)));
+            }
+            self.done += end - start;
+            (self.progress)(self.done);
+            start = end;
+        }
+        roots
+    }
+
+    /// One tree over some.
+    fn join(&mut self, roots: &[(Box3, Child)]) -> Child {
+        if let [(_, root)] = roots {
+            return *root;
+        }
+        let below = std::mem::replace(&mut self.tree.depth, 0);
+        let mut refs: Vec<Ref> = roots.iter().enumerate().map(|(i, root)| Ref::new(root.0, i as u32)).collect();
+        let top = sah::build(&mut refs);
+        let root = if top.is_empty() {
+            let node = self.tree.new_node(1);
+            self.tree.settle_node(node, &[]);
+            node
+        } else {
+            self.settle(&top, 1, |_, node| roots[top[node].first as usize].1)
+        };
+        self.tree.depth += below;
+        root
+    }
+
+    /// The wide tree of a binary one.
+    fn settle(&mut self, binary: &[sah::Binary], most: usize, leaf: impl FnMut(&mut Tree, usize) -> Child) -> Child {
+        let nodes = Collapse::new(binary, most).run(self.tree, leaf);
+        order::settle(self.tree, &nodes, &mut self.odds);
+        nodes[0]
+    }
+
+    fn odds_of(&self, root: Child, bounds: Box3) -> Odds {
+        order::below(self.tree, &self.odds, root, bounds)
+    }
+}
+
+/// The box of all.
+fn bounds_of(roots: &[(Box3, Child)]) -> Box3 {
+    roots.iter().fold(Box3::EMPTY, |all, root| all.union(root.0))
 }
 
 /// A tree while rays are cast.
@@ -303,7 +409,7 @@ fn fetch<T>(value: &T) {
 }
 
 /// The triangles below a binary node, in order.
-fn triangles(binary: &[sah::Binary], node: usize) -> Vec<u32> {
+fn triangles_below(binary: &[sah::Binary], node: usize) -> Vec<u32> {
     let mut found = Vec::with_capacity(WIDTH);
     let mut stack = vec![node];
     while let Some(n) = stack.pop() {
@@ -385,6 +491,10 @@ mod tests {
 
     const PRESETS: [ObvhsPreset; 3] = [ObvhsPreset::Fast, ObvhsPreset::Medium, ObvhsPreset::High];
 
+    fn by(preset: ObvhsPreset) -> ObvhsOptions {
+        ObvhsOptions { preset, ..ObvhsOptions::default() }
+    }
+
     fn bits(tree: &Tree) -> Vec<u32> {
         tree.cells.rows().iter().flatten().flat_map(|row| row.to_array().map(f32::to_bits)).collect()
     }
@@ -396,7 +506,7 @@ mod tests {
         for (most, preset) in [1, 7, 100, 1000, PART].into_iter().flat_map(|most| PRESETS.map(|preset| (most, preset)))
         {
             let mut told = Vec::new();
-            let tree = Tree::in_parts(&geometry, preset, most, &mut |done| told.push(done));
+            let tree = Tree::in_parts(&geometry, &by(preset), most, &mut |done| told.push(done));
             assert_eq!(told.last(), Some(&geometry.triangle_count()));
             assert!(told.len() >= geometry.triangle_count() / most);
             assert_eq!(tree.check(), Ok(()), "{preset:?} in parts of {most}");
@@ -426,7 +536,7 @@ mod tests {
         for preset in PRESETS {
             let with = |threads: usize| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                pool.install(|| bits(&Tree::build(&geometry, preset, &mut |_| ())))
+                pool.install(|| bits(&Tree::build(&geometry, &by(preset), &mut |_| ())))
             };
             let alone = with(1);
             for threads in [2, 3, 8] {
@@ -438,7 +548,7 @@ mod tests {
     #[test]
     fn a_broken_tree_is_noticed() {
         let geometry = waves(24);
-        let sound = Tree::build(&geometry, ObvhsPreset::Medium, &mut |_| ());
+        let sound = Tree::build(&geometry, &by(ObvhsPreset::Medium), &mut |_| ());
         assert_eq!(sound.check(), Ok(()));
         let broken = |change: &dyn Fn(&mut Rows)| {
             let mut tree = sound.clone();

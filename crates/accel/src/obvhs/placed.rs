@@ -1,0 +1,182 @@
+//! Instances that share the tree of their mesh.
+//!
+//! A mesh that is placed many times has one tree, in its own coordinates, and a leaf above stands for each place: it is an **entrance**.
+//! A ray that comes to one goes on below it with an origin and a direction in those coordinates; t stays what it is in the world.
+//! There boxes are entered by that ray, but triangles are tested in the world, by the corners that [`Instance::to_world`] gives. So a
+//! hit is the same, to the last bit, whether an instance shares a tree or is laid out.
+//!
+//! **No hit is lost.** A triangle that is hit lies within the padding of a point of the ray (see [`crate::triangle`]). Moved to the
+//! mesh's coordinates, the distance grows along each axis by at most the sum of absolute values of a row of the inverse map, and
+//! to it is added how far the corners, the origin and the direction were rounded. How far along the ray that point is from the hit is
+//! known to the slack for triangles that the ray is not too nearly parallel to; for others, only that both lie within the
+//! triangle's box, so the slack grows by the diagonal of the largest triangle's.
+
+use super::boxes::Box3;
+use super::order::Odds;
+use super::pages::Rows;
+use super::tree::{Cell, Child, Facing};
+use crate::geometry::{Instance, Mesh};
+use crate::triangle::{Beam, PAD};
+use gonio_kernel::{F32x8, Real, U32x8, Vec3};
+use wide::f32x8;
+
+/// Maps that stretch or shrink by more than this are laid out: the bounds of errors are made for others.
+const MOST_STRETCH: f64 = (1 << 20) as f64;
+
+/// So are those whose inverse, times themselves, is further than this from one.
+const MOST_RESIDUAL: f64 = 1.0 / (1 << 30) as f64;
+
+/// Rounding of a number to `f32`, at most.
+const U: f64 = 1.0 / (1 << 24) as f64;
+
+/// An instance of a mesh that keeps a tree.
+#[derive(Clone, Debug)]
+pub(super) struct Placed {
+    /// The mesh's tree.
+    pub(super) root: Child,
+    /// How likely a ray that enters is to hit it.
+    pub(super) odds: Odds,
+    /// All of it, in the world.
+    pub(super) bounds: Box3,
+    /// The place of its first triangle in the order of (instance, prim).
+    pub(super) first: u32,
+    instance: Instance,
+    way: Way,
+    /// How far points of the mesh may be off, along each axis, whatever the ray.
+    error: [f64; 3],
+    /// How far a hit may lie from where the ray passes its triangle, beyond the slack.
+    diagonal: f32,
+}
+
+/// From the world to a mesh's coordinates.
+#[derive(Clone, Debug)]
+pub(super) struct Way {
+    /// M⁻¹, by rows.
+    inverse: [[f64; 3]; 3],
+    /// The sums of their absolute values.
+    stretch: [f64; 3],
+}
+
+impl Way {
+    /// The way to an instance's mesh; `None` if its map has no inverse, or hardly one.
+    pub(super) fn to(instance: &Instance) -> Option<Self> {
+        let m = instance.transform.map(|[a, b, c, _]| [a, b, c]);
+        let next = |i: usize| [(i + 1) % 3, (i + 2) % 3]; // in a circle: then minors need no signs
+        let minor = |r: usize, c: usize| {
+            let ([r, s], [c, d]) = (next(r), next(c));
+            m[r][c] * m[s][d] - m[r][d] * m[s][c]
+        };
+        let determinant: f64 = (0..3).map(|c| m[0][c] * minor(0, c)).sum();
+        let inverse = [0, 1, 2].map(|r| [0, 1, 2].map(|c| minor(c, r) / determinant));
+        let sum = |row: [f64; 3]| row.iter().map(|x| x.abs()).sum::<f64>();
+        let stretch = inverse.map(sum);
+        let residual = |r: usize, c: usize| {
+            let one = if r == c { 1.0 } else { 0.0 };
+            ((0..3).map(|k| inverse[r][k] * m[k][c]).sum::<f64>() - one).abs()
+        };
+        let is_inverse = (0..9).all(|i| residual(i / 3, i % 3) <= MOST_RESIDUAL); // not if it is not a number
+        let is_tame = m.map(sum).into_iter().chain(stretch).all(|x| x <= MOST_STRETCH);
+        (is_inverse && is_tame).then_some(Self { inverse, stretch })
+    }
+
+    /// A vector of the world in the mesh's coordinates.
+    fn follow(&self, v: [f64; 3]) -> [f64; 3] {
+        self.inverse.map(|[a, b, c]| a * v[0] + b * v[1] + c * v[2])
+    }
+}
+
+/// A mesh that keeps a tree.
+pub(super) struct Shared {
+    root: Child,
+    odds: Odds,
+    /// Those of its vertices that triangles use.
+    corners: Vec<[f32; 3]>,
+    /// The longest edge of a triangle.
+    longest: f64,
+}
+
+/// A triangle of a mesh, in its own coordinates.
+pub(super) fn local_triangle(mesh: &Mesh, prim: u32) -> [Vec3<f32>; 3] {
+    mesh.triangles[prim as usize].map(|v| mesh.positions[v as usize].into())
+}
+
+impl Shared {
+    /// A mesh whose tree has that root.
+    pub(super) fn new(mesh: &Mesh, root: Child, odds: Odds) -> Self {
+        let mut used = vec![false; mesh.positions.len()];
+        mesh.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+        let corners = mesh.positions.iter().zip(used).filter_map(|(&p, used)| used.then_some(p)).collect();
+        let length = |e: Vec3<f32>| <[f32; 3]>::from(e).iter().map(|&x| f64::from(x).powi(2)).sum::<f64>().sqrt();
+        let longest = (0..mesh.triangles.len() as u32).flat_map(|prim| {
+            let [a, b, c] = local_triangle(mesh, prim);
+            [b - a, c - b, a - c].map(length)
+        });
+        Self { root, odds, corners, longest: longest.fold(0.0, f64::max) }
+    }
+}
+
+impl Placed {
+    /// An instance of the mesh, whose first triangle has that place.
+    pub(super) fn new(instance: &Instance, way: Way, mesh: &Shared, first: u32) -> Self {
+        let corners = mesh.corners.iter().map(|&p| Vec3::from(instance.to_world(p)));
+        let largest = mesh.corners.iter().flatten().map(|&x| f64::from(x.abs())).fold(0.0, f64::max);
+        let terms = |[a, b, c, t]: [f64; 4]| (a.abs() + b.abs() + c.abs()) * largest + t.abs();
+        let rounding = 2.0 * U * instance.transform.map(terms).into_iter().fold(0.0, f64::max);
+        let norm = instance.transform.iter().flat_map(|row| &row[..3]).map(|x| x * x).sum::<f64>().sqrt();
+        Self {
+            root: mesh.root,
+            odds: mesh.odds,
+            bounds: Box3::of_points(corners),
+            first,
+            instance: *instance,
+            error: way.stretch.map(|stretch| stretch * rounding + largest * (U / 4.0)),
+            way,
+            // Twice, where the square root of three is meant.
+            diagonal: (2.0 * norm * mesh.longest) as f32,
+        }
+    }
+
+    /// A ray in the mesh's coordinates.
+    pub(super) fn enter(&self, beam: &Beam<f32>) -> Beam<f32> {
+        let [origin, dir] = [beam.origin(), beam.dir()].map(|v| <[f32; 3]>::from(v).map(f64::from));
+        let transform = &self.instance.transform;
+        let origin = self.way.follow([0, 1, 2].map(|axis| origin[axis] - transform[axis][3]));
+        let padding = 2.0 * f64::from(PAD * beam.reach());
+        let error =
+            [0, 1, 2].map(|axis| self.error[axis] + self.way.stretch[axis] * padding + 8.0 * U * origin[axis].abs());
+        let [origin, dir, error] = [origin, self.way.follow(dir), error].map(|v| Vec3::from(v.map(|x| x as f32)));
+        beam.moved(origin, dir, error)
+    }
+
+    /// How far behind a hit boxes still count, if in the world it is `slack`.
+    pub(super) fn slack(&self, slack: f32) -> f32 {
+        2.0 * slack + self.diagonal
+    }
+
+    /// A block of the mesh's tree as one of the world's.
+    #[inline(always)]
+    pub(super) fn in_world(&self, block: Cell<'_>) -> Rows {
+        let local = block.corners();
+        let mut rows = [f32x8::ZERO; 10];
+        for (corner, rows) in local.iter().zip(rows.chunks_exact_mut(3)) {
+            let [x, y, z] = <[F32x8; 3]>::from(*corner).map(|c| c.to_array().map(f64::from));
+            for (row, [a, b, c, t]) in rows.iter_mut().zip(self.instance.transform) {
+                // As `Instance::to_world` has it.
+                *row = f32x8::new(std::array::from_fn(|i| (a * x[i] + b * y[i] + c * z[i] + t) as f32));
+            }
+        }
+        let index = std::array::from_fn(|lane| self.first + block.index(lane));
+        rows[9] = U32x8::new(index).as_real().0;
+        rows
+    }
+}
+
+/// The triangles of a block, as a set, whose own boxes a ray enters.
+#[inline(always)]
+pub(super) fn candidates(block: Cell<'_>, beam: &Beam<f32>, facing: &Facing, from: f32, until: f32) -> u32 {
+    let [a, b, c] = block.corners().map(<[F32x8; 3]>::from);
+    let ends = [0, 1, 2].map(|axis| [a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis])]);
+    let [near, far] = facing.planes_of(|row| ends[row / 2 % 3][row % 2]);
+    let [enter, leave] = beam.splat().slab(near, far);
+    enter.max(F32x8::splat(from)).le(leave.min(F32x8::splat(until))).to_bits()
+}
