@@ -124,12 +124,21 @@ impl View<'_> {
             for_each_bit(now.block, |i, bit| {
                 let walk = &mut walks[i];
                 let block = self.cell(walk.next);
+                let mut look = |walk: &mut Walk, crossing: &Crossing, block: Cell<'_>| {
+                    crossing.mask.to_bits() != 0 && quest.meet(walk, crossing, block)
+                };
                 let is_done = match homes.get(i) {
                     Some(Home { inside: Some(number), beam, .. }) if PLACED => {
-                        let any = candidates(block, &walk.beam, &walk.facing, walk.from, walk.until) != 0;
-                        any && walk.meet::<FAST, Q>(beam, Cell::of(&self.tree.placed[*number].in_world(block)), quest)
+                        candidates(block, &walk.beam, &walk.facing, walk.from, walk.until) != 0 && {
+                            let rows = self.tree.placed[*number].in_world(block);
+                            let block = Cell::of(&rows);
+                            look(walk, &test::<FAST>(&beam.splat(), &block.corners(), walk.t_min, walk.t_best), block)
+                        }
                     }
-                    _ => walk.meet::<FAST, Q>(&{ walk.beam }, block, quest),
+                    _ => {
+                        let beam = walk.beam.splat();
+                        look(walk, &test::<FAST>(&beam, &block.corners(), walk.t_min, walk.t_best), block)
+                    }
                 };
                 if is_done {
                     next.done |= bit;
@@ -292,13 +301,6 @@ impl Walk {
     fn see_as_far_as(&mut self, slack: f32) {
         self.slack = slack;
         (self.from, self.until) = (self.t_min - slack, self.t_best + slack);
-    }
-
-    /// Tests the ray, whose beam in the world it is given, against a block of the world; true if it need not go on.
-    #[inline(always)]
-    fn meet<const FAST: bool, Q: Quest>(&mut self, beam: &Beam<f32>, block: Cell<'_>, quest: &mut Q) -> bool {
-        let crossing = test::<FAST>(&beam.splat(), &block.corners(), self.t_min, self.t_best);
-        crossing.mask.to_bits() != 0 && quest.meet(self, &crossing, block)
     }
 
     fn nowhere(beam: Beam<f32>, base: usize) -> Self {
