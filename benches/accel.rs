@@ -6,6 +6,7 @@
 //! cargo xtask rays --build   [--rounds N] [--json FILE]     time and memory of building, and after how many rays a tree has paid
 //! cargo xtask rays --threads [--rounds N] [--json FILE]     two threads against two processes
 //! cargo xtask rays --sizes   [--most N] [--svg FILE] [--json FILE]     cost of a ray from 1000 triangles to ten million
+//! cargo xtask rays --instances [--rounds N] [--json FILE]   speed of a tree that instances share over one that is laid out
 //! ```
 //!
 //! All but criterion's rows take `--scene NAME` (atrium, terrain, hair, scans), `--rays K` (camera rays per scene; other sets
@@ -22,6 +23,7 @@ mod scenes;
 mod accel {
     pub(crate) mod build;
     pub(crate) mod contenders;
+    pub(crate) mod instances;
     pub(crate) mod measure;
     pub(crate) mod options;
     pub(crate) mod plot;
@@ -52,6 +54,7 @@ fn main() -> ExitCode {
         Mode::Build => accel::build::run(&options),
         Mode::Threads => accel::threads::run(&options),
         Mode::Sizes => accel::sizes::run(&options),
+        Mode::Instances => accel::instances::run(&options),
         Mode::Memory(builder) => accel::build::tell_memory(&options, *builder),
         Mode::Trace => accel::threads::trace_on_demand(&options),
     };

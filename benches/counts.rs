@@ -147,28 +147,8 @@ fn rays(rows: &mut Rows, scene: &Scene) {
     let [primary, diffuse, _, shadow, _] = sets(scene, &robust, RAYS);
     for (test, accel) in [("robust", robust), ("fast", fast)] {
         for set in [&primary, &diffuse, &shadow] {
-            let mut answers = Answers::to(set);
-            rows.row(&format!("{}/{test}", set.name), || answers.find(&accel, set));
-        }
-    }
-}
-
-/// Room for what a set of rays is told.
-struct Answers {
-    hits: Vec<Hit8>,
-    blocked: Vec<Mask8>,
-}
-
-impl Answers {
-    fn to(set: &RaySet) -> Self {
-        let packets = set.packets.len();
-        Self { hits: vec![Hit8::miss(); packets], blocked: vec![Mask8::splat(false); packets] }
-    }
-
-    fn find(&mut self, accel: &dyn Accel, set: &RaySet) {
-        match set.any_hit {
-            true => accel.occluded(set.kind, &set.packets, None, &mut self.blocked),
-            false => accel.closest(set.kind, &set.packets, &mut self.hits),
+            let mut answers = Answers::of(set);
+            rows.row(&format!("{}/{test}", set.name), || answers.ask(&accel, set.kind, set));
         }
     }
 }

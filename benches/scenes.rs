@@ -29,7 +29,7 @@ use sheet::Sheets;
 pub(crate) struct Scene {
     /// The character, and where it matters, what it was made of.
     pub(crate) name: String,
-    /// One mesh, placed once.
+    /// One mesh, placed once, but for [`instances`].
     pub(crate) geometry: Geometry,
     /// From where it is looked at.
     pub(crate) camera: Camera,
@@ -109,6 +109,11 @@ impl Character {
         let real = if self == Self::Scans { scans::bunnies() } else { None };
         real.unwrap_or_else(|| self.scene(self.full_size()))
     }
+}
+
+/// The scans as instances of one mesh.
+pub(crate) fn instances() -> Scene {
+    scans::instances()
 }
 
 /// A scene of one mesh.

@@ -1,32 +1,16 @@
 //! Who takes part: obvhs with its presets, and Embree, if this build has it, in all its ways.
 
-use gonio_accel::{Accel, Geometry, Intersect, Obvhs, ObvhsOptions, ObvhsPreset, RayKind};
+use gonio_accel::{Accel, Geometry, Intersect, Obvhs, ObvhsOptions, ObvhsPreset, RayKind, Sharing};
 #[cfg(feature = "embree")]
 use gonio_accel::{Embree, EmbreeOptions, EmbreeQuality, EmbreeWidth};
 use std::sync::Arc;
 
-/// Presets of obvhs; speeds are compared with the first.
-const PRESETS: &[&str] = &["medium", "fast", "high"];
-
-fn obvhs(preset: &str, geometry: &Geometry, intersect: Intersect) -> Obvhs {
-    let preset = match preset {
-        "fast" => ObvhsPreset::Fast,
-        "high" => ObvhsPreset::High,
-        _ => ObvhsPreset::Medium,
-    };
-    Obvhs::with(geometry, ObvhsOptions { intersect, preset }, &mut |_| ())
-}
-
-/// What the tree takes, if it knows.
-fn bytes(tree: &Obvhs) -> Option<usize> {
-    Some(tree.bytes())
-}
-
 /// Builds a tree of some quality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Builder {
-    /// By the preset of that name.
-    Obvhs(&'static str),
+    Obvhs(ObvhsPreset),
+    /// With trees that instances share.
+    Shared,
     #[cfg(feature = "embree")]
     Embree(EmbreeQuality),
 }
@@ -41,7 +25,7 @@ pub(crate) enum Side {
 /// A tree, and the ways to cast rays at it.
 pub(crate) struct Contender {
     pub(crate) builder: Builder,
-    /// What it takes, if it knows.
+    /// What it takes; Embree does not say.
     pub(crate) bytes: Option<usize>,
     /// With nothing chosen.
     unasked: Arc<dyn Accel>,
@@ -61,12 +45,13 @@ pub(crate) struct Method {
 impl Builder {
     /// Those whose speeds are compared.
     pub(crate) fn compared() -> Vec<Self> {
-        Self::all().into_iter().filter(|builder| !matches!(builder, Self::Obvhs(p) if *p != PRESETS[0])).collect()
+        let other = |builder: &Self| matches!(builder, Self::Obvhs(preset) if *preset != ObvhsPreset::default());
+        Self::all().into_iter().filter(|builder| !other(builder)).collect()
     }
 
     /// Every preset, and both qualities of Embree.
     pub(crate) fn all() -> Vec<Self> {
-        let ours = PRESETS.iter().map(|preset| Self::Obvhs(preset));
+        let ours = [ObvhsPreset::Medium, ObvhsPreset::Fast, ObvhsPreset::High].into_iter().map(Self::Obvhs);
         #[cfg(feature = "embree")]
         let ours = ours.chain([EmbreeQuality::Medium, EmbreeQuality::High].map(Self::Embree));
         ours.collect()
@@ -74,7 +59,8 @@ impl Builder {
 
     pub(crate) fn name(self) -> String {
         match self {
-            Self::Obvhs(preset) => format!("obvhs-{preset}"),
+            Self::Obvhs(preset) => format!("obvhs-{preset:?}").to_lowercase(),
+            Self::Shared => "obvhs-shared".to_owned(),
             #[cfg(feature = "embree")]
             Self::Embree(quality) => format!("embree-{quality:?}").to_lowercase(),
         }
@@ -86,19 +72,21 @@ impl Builder {
 
     pub(crate) fn side(self) -> Side {
         match self {
-            Self::Obvhs(_) => Side::Ours,
+            Self::Obvhs(_) | Self::Shared => Side::Ours,
             #[cfg(feature = "embree")]
             Self::Embree(_) => Side::Embree,
         }
     }
 
     pub(crate) fn build(self, geometry: &Geometry, intersect: Intersect) -> Result<Contender, String> {
+        let ours = |preset: ObvhsPreset, sharing: Sharing| {
+            let tree = Obvhs::with(geometry, ObvhsOptions { intersect, preset, sharing }, &mut |_| ());
+            let (bytes, tree) = (Some(tree.bytes()), Arc::new(tree));
+            Ok(Contender { builder: self, bytes, unasked: tree.clone(), ways: vec![("", tree)] })
+        };
         match self {
-            Self::Obvhs(preset) => {
-                let tree = obvhs(preset, geometry, intersect);
-                let (bytes, tree) = (bytes(&tree), Arc::new(tree));
-                Ok(Contender { builder: self, bytes, unasked: tree.clone(), ways: vec![("", tree)] })
-            }
+            Self::Obvhs(preset) => ours(preset, Sharing::Never),
+            Self::Shared => ours(ObvhsPreset::default(), Sharing::Always),
             #[cfg(feature = "embree")]
             Self::Embree(quality) => {
                 let options = EmbreeOptions { intersect, quality, width: None };

@@ -1,9 +1,8 @@
 //! Turns, medians, and whether the answers agree.
 
 use super::contenders::{Method, Side};
-use crate::scenes::rays::RaySet;
-use gonio_accel::Hit8;
-use gonio_kernel::{F32x8, Mask8};
+use crate::scenes::rays::{Answers, RaySet};
+use gonio_kernel::F32x8;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -21,39 +20,21 @@ pub(crate) struct Timed {
     pub(crate) seconds: Vec<f64>,
 }
 
-/// Room for the answers to a ray set; filled anew by every turn.
-pub(crate) struct Answers {
-    hits: Vec<Hit8>,
-    blocked: Vec<Mask8>,
-}
-
-impl Answers {
-    pub(crate) fn of(set: &RaySet) -> Self {
-        let n = set.packets.len();
-        let (hits, blocked) = if set.any_hit { (0, n) } else { (n, 0) };
-        Self { hits: vec![Hit8::miss(); hits], blocked: vec![Mask8::first(0); blocked] }
-    }
-
-    /// Where each live ray's hit lies; 0 for a ray that is only known to be blocked, infinity for a miss.
-    fn distances<'a>(&'a self, set: &'a RaySet) -> impl Iterator<Item = f32> + 'a {
-        let lanes = (0..set.packets.len()).flat_map(|packet| (0..F32x8::LANES).map(move |lane| (packet, lane)));
-        let live = lanes.filter(|&(packet, lane)| set.packets[packet].mask.lane(lane));
-        live.map(|(packet, lane)| match self.blocked.get(packet) {
-            Some(blocked) if blocked.lane(lane) => 0.0,
-            Some(_) => f32::INFINITY,
-            None => self.hits[packet].t.lane(lane),
-        })
-    }
+/// Where each live ray's hit lies; 0 for a ray that is only known to be blocked, infinity for a miss.
+fn distances<'a>(answers: &'a Answers, set: &'a RaySet) -> impl Iterator<Item = f32> + 'a {
+    let lanes = (0..set.packets.len()).flat_map(|packet| (0..F32x8::LANES).map(move |lane| (packet, lane)));
+    let live = lanes.filter(|&(packet, lane)| set.packets[packet].mask.lane(lane));
+    live.map(|(packet, lane)| match answers.blocked.get(packet) {
+        Some(blocked) if blocked.lane(lane) => 0.0,
+        Some(_) => f32::INFINITY,
+        None => answers.hits[packet].t.lane(lane),
+    })
 }
 
 /// Answers all rays once; the seconds it took.
 pub(crate) fn cast(method: &Method, set: &RaySet, answers: &mut Answers) -> f64 {
     let start = Instant::now();
-    if set.any_hit {
-        method.accel.occluded(method.kind, &set.packets, None, &mut answers.blocked);
-    } else {
-        method.accel.closest(method.kind, &set.packets, &mut answers.hits);
-    }
+    answers.ask(&*method.accel, method.kind, set);
     let seconds = start.elapsed().as_secs_f64();
     black_box(&answers);
     seconds
@@ -69,7 +50,7 @@ pub(crate) fn take_turns(methods: Vec<Method>, set: &RaySet, rounds: usize) -> R
     let mut timed: Vec<Timed> = methods.into_iter().map(|method| Timed { method, seconds: Vec::new() }).collect();
     for one in &timed {
         cast(&one.method, set, &mut answers);
-        let found = answers.distances(set);
+        let found = distances(&answers, set);
         match &first {
             None => first = Some(found.collect()),
             Some(first) => agree(first, found).map_err(|e| format!("{} rays, {}: {e}", set.name, one.method.name))?,

@@ -13,6 +13,7 @@ pub(crate) enum Mode {
     Build,
     Threads,
     Sizes,
+    Instances,
     /// As a child: build once and tell what memory it took.
     Memory(Builder),
     /// As a child: cast the rays of a set whenever told to.
@@ -48,7 +49,7 @@ impl Options {
             json: None,
             svg: None,
         };
-        const MODES: [&str; 6] = ["--ratio", "--build", "--threads", "--sizes", "--memory", "--trace"];
+        const MODES: [&str; 7] = ["--ratio", "--build", "--threads", "--sizes", "--instances", "--memory", "--trace"];
         if !arguments.iter().any(|argument| MODES.contains(&argument.as_str())) {
             return Ok(options);
         }
@@ -61,6 +62,7 @@ impl Options {
                 "--build" => options.mode = Mode::Build,
                 "--threads" => options.mode = Mode::Threads,
                 "--sizes" => options.mode = Mode::Sizes,
+                "--instances" => options.mode = Mode::Instances,
                 "--memory" => options.mode = Mode::Memory(Builder::named(value()?)?),
                 "--trace" => options.mode = Mode::Trace,
                 "--rounds" => options.rounds = number(option, value()?)?,

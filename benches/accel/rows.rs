@@ -1,10 +1,10 @@
 //! Criterion's rows: every scene, kind of ray and backend, robust.
 
 use super::contenders::Builder;
-use crate::scenes::{Character, rays};
+use crate::scenes::Character;
+use crate::scenes::rays::{self, Answers};
 use criterion::{Criterion, Throughput};
-use gonio_accel::{Accel, Hit8, Intersect};
-use gonio_kernel::Mask8;
+use gonio_accel::Intersect;
 
 /// Camera rays of a row.
 const RAYS: usize = 1 << 16;
@@ -20,16 +20,10 @@ pub(crate) fn run() {
         for set in rays::sets(&scene, built[0].as_a_renderer_does(), RAYS) {
             let mut group = criterion.benchmark_group(format!("{}/{}", scene.name, set.name));
             group.throughput(Throughput::Elements(set.count as u64));
-            let mut hits = vec![Hit8::miss(); set.packets.len()];
-            let mut blocked = vec![Mask8::first(0); set.packets.len()];
+            let mut answers = Answers::of(&set);
             for contender in &built {
-                let accel: &dyn Accel = contender.as_a_renderer_does();
                 group.bench_function(contender.builder.name(), |bencher| {
-                    if set.any_hit {
-                        bencher.iter(|| accel.occluded(set.kind, &set.packets, None, &mut blocked));
-                    } else {
-                        bencher.iter(|| accel.closest(set.kind, &set.packets, &mut hits));
-                    }
+                    bencher.iter(|| answers.ask(contender.as_a_renderer_does(), set.kind, &set));
                 });
             }
             group.finish();

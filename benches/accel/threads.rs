@@ -5,8 +5,9 @@
 //! at the same time, in turns with the two threads. The machine needs two free cores.
 
 use super::contenders::{Builder, Method};
-use super::measure::{Answers, cast, fails, median, slack};
+use super::measure::{cast, fails, median, slack};
 use super::options::Options;
+use crate::scenes::rays::Answers;
 use crate::scenes::rays::{self, RaySet};
 use serde::Serialize;
 use std::io::{BufRead, BufReader, Write};

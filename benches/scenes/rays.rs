@@ -24,6 +24,29 @@ pub(crate) struct RaySet {
     pub(crate) count: usize,
 }
 
+/// Room for the answers to a ray set; filled anew whenever it is asked.
+pub(crate) struct Answers {
+    pub(crate) hits: Vec<Hit8>,
+    pub(crate) blocked: Vec<Mask8>,
+}
+
+impl Answers {
+    pub(crate) fn of(set: &RaySet) -> Self {
+        let n = set.packets.len();
+        let (hits, blocked) = if set.any_hit { (0, n) } else { (n, 0) };
+        Self { hits: vec![Hit8::miss(); hits], blocked: vec![Mask8::first(0); blocked] }
+    }
+
+    /// Asks a backend about all rays of the set, as of that kind.
+    pub(crate) fn ask(&mut self, accel: &dyn Accel, kind: RayKind, set: &RaySet) {
+        if set.any_hit {
+            accel.occluded(kind, &set.packets, None, &mut self.blocked);
+        } else {
+            accel.closest(kind, &set.packets, &mut self.hits);
+        }
+    }
+}
+
 /// Names of all sets, in their order.
 pub(crate) const NAMES: [&str; 5] = ["primary", "diffuse", "random", "shadow", "occlusion"];
 
@@ -102,13 +125,14 @@ struct Start {
 
 /// Of every hit, in order.
 fn starts(scene: &Scene, rays: &[Ray8], hits: &[Hit8]) -> Vec<Start> {
-    let mesh = &scene.geometry.meshes()[0];
+    let (meshes, instances) = (scene.geometry.meshes(), scene.geometry.instances());
     let mut starts = Vec::with_capacity(rays.len() * F32x8::LANES);
     for (ray, hit) in rays.iter().zip(hits) {
         let found = each_lane(|l| hit.lane(l));
         let corners = each_lane(|l| {
-            let triangle = found[l].map_or([0; 3], |hit| mesh.triangles[hit.prim as usize]);
-            triangle.map(|v| Vec3::from(mesh.positions[v as usize]))
+            let (mesh, instance, prim) = found[l].map_or((0, 0, 0), |hit| (hit.mesh, hit.instance, hit.prim));
+            let (mesh, instance) = (&meshes[mesh as usize], &instances[instance as usize]);
+            mesh.triangles[prim as usize].map(|v| Vec3::from(instance.to_world(mesh.positions[v as usize])))
         });
         let corners = [0, 1, 2].map(|c| Vec3::from_lanes(|l| corners[l][c]));
         let across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
@@ -142,11 +166,11 @@ impl Start {
 
 /// From anywhere within the bounds in any direction.
 fn anywhere<'a>(scene: &Scene, count: usize, random: &'a mut Random) -> impl Iterator<Item = Ray> + use<'a> {
-    let positions = &scene.geometry.meshes()[0].positions;
     let extreme = |pick: fn(f32, f32) -> f32| {
-        positions.iter().fold(positions[0], |a, b| std::array::from_fn(|axis| pick(a[axis], b[axis])))
+        let corners = scene.geometry.world_triangles().flat_map(|triangle| triangle.corners);
+        corners.reduce(|a, b| Vec3::new(pick(a.x, b.x), pick(a.y, b.y), pick(a.z, b.z))).unwrap_or(Vec3::splat(0.0))
     };
-    let (lo, hi) = (Vec3::from(extreme(f32::min)), Vec3::from(extreme(f32::max)));
+    let (lo, hi) = (extreme(f32::min), extreme(f32::max));
     (0..count).map(move |_| {
         let share = Vec3::new(random.next(), random.next(), random.next());
         let dir = sample_uniform_sphere([random.next(), random.next()]);

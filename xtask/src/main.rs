@@ -33,7 +33,7 @@ cargo xtask bench --gate         count instructions by callgrind and compare wit
                                  rose beyond its limit, is new or is missing
 cargo xtask bench --accept REASON [--only ROW]
                                  write what is counted now into benches/limits.toml, with the reason
-cargo xtask rays [--ratio | --build | --threads | --sizes] [ARG]...
+cargo xtask rays [--ratio | --build | --threads | --sizes | --instances] [ARG]...
                                  the speed of ray casting beside Embree, on one core: see benches/accel.rs
 cargo xtask ratio                how much faster eight lanes are than one direction at a time
 cargo xtask fuzz [--executions N] [--target NAME]

@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
             program(built)
         }
     };
-    let modes = ["--ratio", "--build", "--threads", "--sizes"];
+    let modes = ["--ratio", "--build", "--threads", "--sizes", "--instances"];
     let mode = if arguments.iter().any(|argument| modes.contains(&argument.as_str())) { None } else { Some("--ratio") };
     run_program(bench.args(mode).args(arguments))
 }
