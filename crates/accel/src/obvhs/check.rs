@@ -33,8 +33,8 @@ pub enum TreeError {
         /// Its slot.
         slot: usize,
     },
-    /// A placed mesh has no entrance, or two, or reaches beyond its box.
-    #[error("entrance {entrance} is not there once, or the mesh behind it reaches beyond its box")]
+    /// An entrance to the tree of an instance is not there once, or what is behind it reaches beyond its box.
+    #[error("entrance {entrance} is not there once, or what is behind it reaches beyond its box")]
     Entrance {
         /// The number of the entrance.
         entrance: usize,
@@ -70,23 +70,21 @@ struct Seen {
 impl Tree {
     /// Looks at every cell, and at every triangle of every instance: O(n).
     pub(super) fn check(&self) -> Result<(), TreeError> {
-        let mut seen = Seen { cells: vec![0; self.cell_count()], entrances: vec![0; self.placed.len()], waits: 1 };
+        let mut seen = Seen { cells: vec![0; self.cell_count()], entrances: vec![0; self.entrances.len()], waits: 1 };
         let mut triangles = vec![0_usize; self.order.count()];
         self.check_below(self.root, 1, &mut seen, &mut |block| {
             block.lanes_used().for_each(|lane| triangles[block.index(lane) as usize] += 1);
         })?;
-        let mut blocks: Vec<Cell<'_>> = Vec::new();
-        for (number, placed) in self.placed.iter().enumerate() {
-            if number == 0 || placed.root != self.placed[number - 1].root {
-                blocks.clear();
-                let waits = seen.waits + 1; // the exit
-                self.check_below(placed.root, waits, &mut seen, &mut |block| blocks.push(block))?;
-            }
-            for block in &blocks {
-                let rows = placed.in_world(*block);
+        let waits = seen.waits + 1; // the exit
+        for &root in &self.shared {
+            self.check_below(root, waits, &mut seen, &mut |_| ())?;
+        }
+        for (number, entrance) in self.entrances.iter().enumerate() {
+            for block in self.blocks_below(entrance.subtree) {
+                let rows = self.placed[entrance.placed as usize].in_world(block);
                 let block = Cell::of(&rows);
                 block.lanes_used().for_each(|lane| triangles[block.index(lane) as usize] += 1);
-                if !placed.bounds.contains(block.bounds()) {
+                if !entrance.bounds.contains(block.bounds()) {
                     return Err(TreeError::Entrance { entrance: number });
                 }
             }
@@ -129,7 +127,7 @@ impl Tree {
             }
             let bounds = if child.is_entrance() {
                 seen.waits = seen.waits.max(waits);
-                self.placed[child.number()].bounds
+                self.entrances[child.number()].bounds
             } else if child.is_leaf() {
                 visit(self.view().cell(child));
                 self.cell(child).bounds()
@@ -168,11 +166,6 @@ impl Tree {
 }
 
 impl Cell<'_> {
-    fn lanes_used(&self) -> impl Iterator<Item = usize> + Clone + use<> {
-        let used = self.used();
-        (0..WIDTH).filter(move |lane| used >> lane & 1 != 0)
-    }
-
     /// The box of a block's triangles.
     fn bounds(&self) -> Box3 {
         let corner = |lane: usize, c: usize| {

@@ -14,9 +14,9 @@
 //! Only a tree with entrances ([`super::placed`]) has rays that are inside of one: what they were outside is kept beside them, and the
 //! way out lies on their stack. Other trees are walked by code that knows nothing of it.
 
-use super::placed::{Placed, candidates};
+use super::placed::candidates;
 use super::stack::Stack;
-use super::tree::{Cell, Child, Facing, Slots, View};
+use super::tree::{Cell, Child, Facing, Slots, Tree, View};
 use crate::ray::{NO_HIT, Ray8};
 use crate::triangle::{Beam, Crossing, intersect, intersect_fast};
 use gonio_kernel::{F32x8, Mask, Mask8, Real, Vec3};
@@ -75,14 +75,24 @@ impl Walk {
     }
 }
 
-/// What a ray in the tree of a placed mesh was in the world.
+/// What a ray is elsewhere than where it is: in the world while it is in the tree of a placed mesh, and in the mesh that it was in
+/// last.
 #[derive(Clone)]
-struct Home {
-    /// Which instance it is in, if it is in one.
-    inside: Option<usize>,
+struct Elsewhere {
+    is_inside: bool,
+    /// Which of the placed it is in, or was in last.
+    placed: Option<u32>,
+    world: Stance,
+    /// In the mesh's coordinates.
+    mesh: Stance,
+    slack: f32,
+}
+
+/// How a ray meets boxes.
+#[derive(Clone, Copy)]
+struct Stance {
     beam: Beam<f32>,
     facing: Facing,
-    slack: f32,
 }
 
 /// The rays of a slice, one after the other.
@@ -107,7 +117,7 @@ impl View<'_> {
         let beam = Beam::new(first.origin, first.dir, self.tree.lo, self.tree.hi);
         let mut queue = Queue { rays, begun: 0, left: 0, beam, down: [0; 3] };
         let mut walks: [Walk; FLIGHT] = std::array::from_fn(|i| Walk::nowhere(beam.lane(0), i * size));
-        let mut homes = if PLACED { vec![Home::of(&walks[0]); FLIGHT] } else { Vec::new() };
+        let mut others = if PLACED { vec![Elsewhere::of(&walks[0]); FLIGHT] } else { Vec::new() };
         let mut next = Next::default();
         for (i, walk) in walks.iter_mut().enumerate() {
             if self.take::<FAST, Q>(&mut queue, walk, quest) {
@@ -127,12 +137,16 @@ impl View<'_> {
                 let mut look = |walk: &mut Walk, crossing: &Crossing, block: Cell<'_>| {
                     crossing.mask.to_bits() != 0 && quest.meet(walk, crossing, block)
                 };
-                let is_done = match homes.get(i) {
-                    Some(Home { inside: Some(number), beam, .. }) if PLACED => {
+                let is_done = match others.get(i) {
+                    Some(Elsewhere { is_inside: true, placed: Some(number), world, .. }) if PLACED => {
                         candidates(block, &walk.beam, &walk.facing, walk.from, walk.until) != 0 && {
-                            let rows = self.tree.placed[*number].in_world(block);
+                            let rows = self.tree.placed[*number as usize].in_world(block);
                             let block = Cell::of(&rows);
-                            look(walk, &test::<FAST>(&beam.splat(), &block.corners(), walk.t_min, walk.t_best), block)
+                            look(
+                                walk,
+                                &test::<FAST>(&world.beam.splat(), &block.corners(), walk.t_min, walk.t_best),
+                                block,
+                            )
                         }
                     }
                     _ => {
@@ -149,13 +163,12 @@ impl View<'_> {
             for_each_bit(now.nothing, |i, bit| self.pop::<PLACED, Q>(bit, &mut walks[i], &stacks, &mut next));
             if PLACED {
                 for_each_bit(now.entrance, |i, bit| {
-                    let (walk, home) = (&mut walks[i], &mut homes[i]);
+                    let (walk, other) = (&mut walks[i], &mut others[i]);
                     if walk.next == Child::EXIT {
-                        walk.leave(home);
+                        walk.leave(other);
                         self.pop::<PLACED, Q>(bit, walk, &stacks, &mut next);
                     } else {
-                        *home = Home::of(walk);
-                        walk.enter(home, walk.next.number(), &self.tree.placed, &mut stacks);
+                        walk.enter(other, self.tree, &mut stacks);
                         next.goes_to::<PLACED>(bit, walk.next);
                     }
                 });
@@ -164,7 +177,7 @@ impl View<'_> {
                 let walk = &mut walks[i];
                 quest.done(walk);
                 if PLACED {
-                    homes[i].inside = None;
+                    (others[i].is_inside, others[i].placed) = (false, None);
                 }
                 if self.take::<FAST, Q>(&mut queue, walk, quest) {
                     next.goes_to::<PLACED>(bit, walk.next);
@@ -271,31 +284,42 @@ pub(super) fn sound(ray: &Ray8) -> Mask8 {
     ray.mask & finite(ray.origin) & finite(ray.dir)
 }
 
-impl Home {
+impl Elsewhere {
     fn of(walk: &Walk) -> Self {
-        Self { inside: None, beam: walk.beam, facing: walk.facing, slack: walk.slack }
+        let stance = walk.stance();
+        Self { is_inside: false, placed: None, world: stance, mesh: stance, slack: walk.slack }
     }
 }
 
 impl Walk {
-    /// Goes on in the tree of a placed mesh, with the way out on the stack.
-    fn enter(&mut self, home: &mut Home, number: usize, placed: &[Placed], stacks: &mut Stack) {
-        let placed = &placed[number];
-        home.inside = Some(number);
-        self.beam = placed.enter(&home.beam);
-        let inverse = <[f32; 3]>::from(self.beam.inverse());
-        self.facing = Facing::of(inverse.map(|i| usize::from(i < 0.0)));
-        self.see_as_far_as(placed.slack(home.slack));
+    fn stance(&self) -> Stance {
+        Stance { beam: self.beam, facing: self.facing }
+    }
+
+    fn take_stance(&mut self, stance: &Stance, slack: f32) {
+        (self.beam, self.facing) = (stance.beam, stance.facing);
+        self.see_as_far_as(slack);
+    }
+
+    /// Goes in by the entrance that is next, with the way out on the stack.
+    fn enter(&mut self, other: &mut Elsewhere, tree: &Tree, stacks: &mut Stack) {
+        let entrance = &tree.entrances[self.next.number()];
+        (other.is_inside, other.world, other.slack) = (true, self.stance(), self.slack);
+        if other.placed != Some(entrance.placed) {
+            let beam = tree.placed[entrance.placed as usize].enter(&self.beam);
+            let down = <[f32; 3]>::from(beam.inverse()).map(|i| usize::from(i < 0.0));
+            (other.placed, other.mesh) = (Some(entrance.placed), Stance { beam, facing: Facing::of(down) });
+        }
+        self.take_stance(&other.mesh, entrance.slack(other.slack));
         (stacks.children[self.top], stacks.nears[self.top]) = (Child::EXIT.0, f32::NEG_INFINITY);
         self.top += 1;
-        self.next = placed.root;
+        self.next = entrance.subtree;
     }
 
     /// Comes back to the world.
-    fn leave(&mut self, home: &mut Home) {
-        (self.beam, self.facing) = (home.beam, home.facing);
-        self.see_as_far_as(home.slack);
-        home.inside = None;
+    fn leave(&mut self, other: &mut Elsewhere) {
+        self.take_stance(&other.world, other.slack);
+        other.is_inside = false;
     }
 
     fn see_as_far_as(&mut self, slack: f32) {

@@ -1,20 +1,22 @@
 //! Instances that share the tree of their mesh.
 //!
-//! A mesh that is placed many times has one tree, in its own coordinates, and a leaf above stands for each place: it is an **entrance**.
-//! A ray that comes to one goes on below it with an origin and a direction in those coordinates; t stays what it is in the world.
-//! There boxes are entered by that ray, but triangles are tested in the world, by the corners that [`Instance::to_world`] gives. So a
-//! hit is the same, to the last bit, whether an instance shares a tree or is laid out.
+//! A mesh that is placed many times has one tree, in its own coordinates, and leaves above stand for each place: **entrances**.
+//! There is one for each of some subtrees, because the box of a whole mesh is mostly empty, more so if it is turned
+//! (Benthin, Woop, Wald & Áfra 2017, "Improved Two-Level BVHs using Partial Re-Braiding").
+//! A ray that comes to one goes on below it with an origin and a direction in the mesh's coordinates; t stays what it is in the
+//! world. There boxes are entered by that ray, but triangles are tested in the world, by the corners that
+//! [`Instance::to_world`] gives. So a hit is the same, to the last bit, whether an instance shares a tree or is laid out.
 //!
 //! **No hit is lost.** A triangle that is hit lies within the padding of a point of the ray (see [`crate::triangle`]). Moved to the
 //! mesh's coordinates, the distance grows along each axis by at most the sum of absolute values of a row of the inverse map, and
 //! to it is added how far the corners, the origin and the direction were rounded. How far along the ray that point is from the hit is
 //! known to the slack for triangles that the ray is not too nearly parallel to; for others, only that both lie within the
-//! triangle's box, so the slack grows by the diagonal of the largest triangle's.
+//! triangle's box, so the slack grows by the diagonal of the largest one below the entrance.
 
 use super::boxes::Box3;
-use super::order::Odds;
+use super::order::{self, Odds};
 use super::pages::Rows;
-use super::tree::{Cell, Child, Facing};
+use super::tree::{Cell, Child, Facing, Tree};
 use crate::geometry::{Instance, Mesh};
 use crate::triangle::{Beam, PAD};
 use gonio_kernel::{F32x8, Real, U32x8, Vec3};
@@ -26,24 +28,36 @@ const MOST_STRETCH: f64 = (1 << 20) as f64;
 /// So are those whose inverse, times themselves, is further than this from one.
 const MOST_RESIDUAL: f64 = 1.0 / (1 << 30) as f64;
 
+/// A mesh has an entrance for so many triangles,
+const TRIANGLES_EACH: usize = 1024;
+
+/// but no more than these.
+const MOST_ENTRANCES: usize = 32;
+
 /// Rounding of a number to `f32`, at most.
 const U: f64 = 1.0 / (1 << 24) as f64;
 
 /// An instance of a mesh that keeps a tree.
 #[derive(Clone, Debug)]
 pub(super) struct Placed {
-    /// The mesh's tree.
-    pub(super) root: Child,
+    instance: Instance,
+    /// The place of its first triangle in the order of (instance, prim).
+    first: u32,
+    way: Way,
+    /// How far points of the mesh may be off, along each axis, whatever the ray.
+    error: [f64; 3],
+}
+
+/// A subtree of a placed mesh.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entrance {
+    pub(super) subtree: Child,
+    /// Number of the [`Placed`].
+    pub(super) placed: u32,
     /// How likely a ray that enters is to hit it.
     pub(super) odds: Odds,
     /// All of it, in the world.
     pub(super) bounds: Box3,
-    /// The place of its first triangle in the order of (instance, prim).
-    pub(super) first: u32,
-    instance: Instance,
-    way: Way,
-    /// How far points of the mesh may be off, along each axis, whatever the ray.
-    error: [f64; 3],
     /// How far a hit may lie from where the ray passes its triangle, beyond the slack.
     diagonal: f32,
 }
@@ -85,11 +99,17 @@ impl Way {
     }
 }
 
-/// A mesh that keeps a tree.
+/// A mesh that keeps a tree, cut into subtrees.
 pub(super) struct Shared {
+    subtrees: Vec<Subtree>,
+    /// The largest absolute coordinate of a corner.
+    largest: f64,
+}
+
+struct Subtree {
     root: Child,
     odds: Odds,
-    /// Those of its vertices that triangles use.
+    /// Vertices of its triangles, each once.
     corners: Vec<[f32; 3]>,
     /// The longest edge of a triangle.
     longest: f64,
@@ -101,39 +121,65 @@ pub(super) fn local_triangle(mesh: &Mesh, prim: u32) -> [Vec3<f32>; 3] {
 }
 
 impl Shared {
-    /// A mesh whose tree has that root.
-    pub(super) fn new(mesh: &Mesh, root: Child, odds: Odds) -> Self {
-        let mut used = vec![false; mesh.positions.len()];
-        mesh.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
-        let corners = mesh.positions.iter().zip(used).filter_map(|(&p, used)| used.then_some(p)).collect();
+    /// A mesh whose tree has that root, cut where boxes are largest.
+    pub(super) fn new(tree: &Tree, odds: &[Odds], mesh: &Mesh, root: (Box3, Child)) -> Self {
+        let wanted = (mesh.triangles.len() / TRIANGLES_EACH).clamp(1, MOST_ENTRANCES);
+        let mut cut = vec![root];
+        while cut.len() < wanted {
+            let nodes = (0..cut.len()).filter(|&i| !cut[i].1.is_leaf());
+            let largest = nodes.max_by(|&a, &b| cut[a].0.half_area().total_cmp(&cut[b].0.half_area()));
+            let Some(largest) = largest else { break };
+            let (_, node) = cut.swap_remove(largest);
+            cut.extend(tree.cell(node).slots());
+        }
+        let subtree = |(bounds, root)| Subtree::new(tree, mesh, root, order::below(tree, odds, root, bounds));
+        let subtrees: Vec<Subtree> = cut.into_iter().map(subtree).collect();
+        let coordinates = subtrees.iter().flat_map(|subtree| subtree.corners.iter().flatten());
+        Self { largest: coordinates.map(|&x| f64::from(x.abs())).fold(0.0, f64::max), subtrees }
+    }
+}
+
+impl Subtree {
+    fn new(tree: &Tree, mesh: &Mesh, root: Child, odds: Odds) -> Self {
+        let (mut vertices, mut longest) = (Vec::new(), 0.0_f64);
         let length = |e: Vec3<f32>| <[f32; 3]>::from(e).iter().map(|&x| f64::from(x).powi(2)).sum::<f64>().sqrt();
-        let longest = (0..mesh.triangles.len() as u32).flat_map(|prim| {
-            let [a, b, c] = local_triangle(mesh, prim);
-            [b - a, c - b, a - c].map(length)
-        });
-        Self { root, odds, corners, longest: longest.fold(0.0, f64::max) }
+        for block in tree.blocks_below(root) {
+            for prim in block.lanes_used().map(|lane| block.index(lane)) {
+                vertices.extend(mesh.triangles[prim as usize]);
+                let [a, b, c] = local_triangle(mesh, prim);
+                longest = [b - a, c - b, a - c].map(length).into_iter().fold(longest, f64::max);
+            }
+        }
+        vertices.sort_unstable();
+        vertices.dedup();
+        let corners = vertices.into_iter().map(|v| mesh.positions[v as usize]).collect();
+        Self { root, odds, corners, longest }
     }
 }
 
 impl Placed {
     /// An instance of the mesh, whose first triangle has that place.
     pub(super) fn new(instance: &Instance, way: Way, mesh: &Shared, first: u32) -> Self {
-        let corners = mesh.corners.iter().map(|&p| Vec3::from(instance.to_world(p)));
-        let largest = mesh.corners.iter().flatten().map(|&x| f64::from(x.abs())).fold(0.0, f64::max);
-        let terms = |[a, b, c, t]: [f64; 4]| (a.abs() + b.abs() + c.abs()) * largest + t.abs();
+        let terms = |[a, b, c, t]: [f64; 4]| (a.abs() + b.abs() + c.abs()) * mesh.largest + t.abs();
         let rounding = 2.0 * U * instance.transform.map(terms).into_iter().fold(0.0, f64::max);
-        let norm = instance.transform.iter().flat_map(|row| &row[..3]).map(|x| x * x).sum::<f64>().sqrt();
-        Self {
-            root: mesh.root,
-            odds: mesh.odds,
-            bounds: Box3::of_points(corners),
-            first,
-            instance: *instance,
-            error: way.stretch.map(|stretch| stretch * rounding + largest * (U / 4.0)),
-            way,
-            // Twice, where the square root of three is meant.
-            diagonal: (2.0 * norm * mesh.longest) as f32,
-        }
+        let error = way.stretch.map(|stretch| stretch * rounding + mesh.largest * (U / 4.0));
+        Self { instance: *instance, first, way, error }
+    }
+
+    /// The entrances of the instance, which has that number.
+    pub(super) fn entrances(&self, number: usize, mesh: &Shared) -> impl Iterator<Item = Entrance> {
+        let m = self.instance.transform;
+        // A bound of the largest singular value; equal to it if the map turns and scales.
+        let product = |a: usize, b: usize| (0..3).map(|row| m[row][a] * m[row][b]).sum::<f64>();
+        let norm = [0, 1, 2].map(|a| (0..3).map(|b| product(a, b).abs()).sum::<f64>()).into_iter().fold(0.0, f64::max);
+        let scale = (3.0 * norm).sqrt() * 1.001;
+        mesh.subtrees.iter().map(move |subtree| Entrance {
+            subtree: subtree.root,
+            placed: number as u32,
+            odds: subtree.odds,
+            bounds: Box3::of_points(subtree.corners.iter().map(|&p| self.instance.to_world(p).into())),
+            diagonal: (scale * subtree.longest) as f32,
+        })
     }
 
     /// A ray in the mesh's coordinates.
@@ -146,11 +192,6 @@ impl Placed {
             [0, 1, 2].map(|axis| self.error[axis] + self.way.stretch[axis] * padding + 8.0 * U * origin[axis].abs());
         let [origin, dir, error] = [origin, self.way.follow(dir), error].map(|v| Vec3::from(v.map(|x| x as f32)));
         beam.moved(origin, dir, error)
-    }
-
-    /// How far behind a hit boxes still count, if in the world it is `slack`.
-    pub(super) fn slack(&self, slack: f32) -> f32 {
-        2.0 * slack + self.diagonal
     }
 
     /// A block of the mesh's tree as one of the world's.
@@ -168,6 +209,13 @@ impl Placed {
         let index = std::array::from_fn(|lane| self.first + block.index(lane));
         rows[9] = U32x8::new(index).as_real().0;
         rows
+    }
+}
+
+impl Entrance {
+    /// How far behind a hit boxes still count, if in the world it is `slack`.
+    pub(super) fn slack(&self, slack: f32) -> f32 {
+        2.0 * slack + self.diagonal
     }
 }
 

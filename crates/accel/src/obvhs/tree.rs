@@ -9,7 +9,7 @@ use super::boxes::{Box3, Ref};
 use super::collapse::Collapse;
 use super::order::Odds;
 use super::pages::{Pages, Rows};
-use super::placed::{Placed, Shared, local_triangle};
+use super::placed::{Entrance, Placed, Shared, local_triangle};
 use super::stack::{packed, spread, together};
 use super::{ObvhsOptions, ObvhsPreset, bridge, order, sah};
 use crate::geometry::{Geometry, Order};
@@ -126,6 +126,12 @@ impl<'a> Cell<'a> {
         (!F32x8(self.0[9]).to_bits().same(U32x8::splat(self.index(0)))).to_bits() | 1
     }
 
+    /// The same, one after the other.
+    pub(super) fn lanes_used(self) -> impl Iterator<Item = usize> + Clone {
+        let used = self.used();
+        (0..WIDTH).filter(move |lane| used >> lane & 1 != 0)
+    }
+
     /// The place of a triangle of the block.
     #[inline(always)]
     pub(super) fn index(self, lane: usize) -> u32 {
@@ -184,8 +190,12 @@ pub(super) struct Tree {
     cells: Pages,
     pub(super) root: Child,
     pub(super) order: Order,
-    /// Instances that share the tree of their mesh, by the numbers of their entrances.
+    /// The trees of meshes that instances share,
+    pub(super) shared: Vec<Child>,
+    /// those instances,
     pub(super) placed: Vec<Placed>,
+    /// and where rays enter them.
+    pub(super) entrances: Vec<Entrance>,
     pub(super) lo: Vec3<f32>,
     pub(super) hi: Vec3<f32>,
     depth: usize,
@@ -201,8 +211,17 @@ impl Tree {
     fn in_parts(geometry: &Geometry, options: &ObvhsOptions, most: usize, progress: &mut dyn FnMut(usize)) -> Self {
         let none = Vec3::splat(0.0);
         let order = geometry.order().clone();
-        let mut tree =
-            Self { cells: Pages::default(), root: Child(0), order, placed: Vec::new(), lo: none, hi: none, depth: 0 };
+        let mut tree = Self {
+            cells: Pages::default(),
+            root: Child(0),
+            order,
+            shared: Vec::new(),
+            placed: Vec::new(),
+            entrances: Vec::new(),
+            lo: none,
+            hi: none,
+            depth: 0,
+        };
         let mut ways = options.sharing.ways(geometry);
         let mut growth = Growth { tree: &mut tree, preset: options.preset, most, odds: Vec::new(), done: 0, progress };
 
@@ -220,12 +239,16 @@ impl Tree {
             let parts = growth.parts(&[all], |prim| local_triangle(mesh, prim));
             let root = growth.join(&parts);
             below = below.max(std::mem::replace(&mut growth.tree.depth, 0));
-            let shared = Shared::new(mesh, root, growth.odds_of(root, bounds_of(&parts)));
+            let shared = Shared::new(growth.tree, &growth.odds, mesh, (bounds_of(&parts), root));
+            growth.tree.shared.push(root);
             for instance in places {
                 let Some(way) = ways[instance].take() else { continue };
                 let first = geometry.order().places(instance).start;
                 let placed = Placed::new(&geometry.instances()[instance], way, &shared, first);
-                roots.push((placed.bounds, Child::entrance(growth.tree.placed.len())));
+                for entrance in placed.entrances(growth.tree.placed.len(), &shared) {
+                    roots.push((entrance.bounds, Child::entrance(growth.tree.entrances.len())));
+                    growth.tree.entrances.push(entrance);
+                }
                 growth.tree.placed.push(placed);
             }
         }
@@ -256,12 +279,25 @@ impl Tree {
 
     /// Bytes that the tree occupies.
     pub(super) fn bytes(&self) -> usize {
-        size_of_val(self.cells.rows()) + size_of_val(self.placed.as_slice())
+        size_of_val(self.cells.rows()) + size_of_val(self.placed.as_slice()) + size_of_val(self.entrances.as_slice())
     }
 
     /// How many nodes and blocks there are.
     pub(super) fn cell_count(&self) -> usize {
         self.cells.rows().len()
+    }
+
+    /// The blocks below a node or block; not behind entrances.
+    pub(super) fn blocks_below(&self, root: Child) -> Vec<Cell<'_>> {
+        let (mut blocks, mut work) = (Vec::new(), vec![root]);
+        while let Some(child) = work.pop() {
+            if child.is_leaf() {
+                blocks.push(self.cell(child));
+            } else {
+                work.extend(self.cell(child).slots().map(|slot| slot.1).filter(|child| !child.is_entrance()));
+            }
+        }
+        blocks
     }
 
     /// Appends a node, to be filled in, and takes note of how deep it lies.
@@ -364,10 +400,6 @@ impl Growth<'_> {
         let nodes = Collapse::new(binary, most).run(self.tree, leaf);
         order::settle(self.tree, &nodes, &mut self.odds);
         nodes[0]
-    }
-
-    fn odds_of(&self, root: Child, bounds: Box3) -> Odds {
-        order::below(self.tree, &self.odds, root, bounds)
     }
 }
 
