@@ -169,6 +169,7 @@ impl View<'_> {
                         self.pop::<PLACED, Q>(bit, walk, &stacks, &mut next);
                     } else {
                         walk.enter(other, self.tree, &mut stacks);
+                        self.prefetch(walk.next);
                         next.goes_to::<PLACED>(bit, walk.next);
                     }
                 });

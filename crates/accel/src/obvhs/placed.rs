@@ -20,7 +20,7 @@ use super::tree::{Cell, Child, Facing, Tree};
 use crate::geometry::{Instance, Mesh};
 use crate::triangle::{Beam, PAD};
 use gonio_kernel::{F32x8, Real, U32x8, Vec3};
-use wide::f32x8;
+use wide::{f32x8, f64x4};
 
 /// Maps that stretch or shrink by more than this are laid out: the bounds of errors are made for others.
 const MOST_STRETCH: f64 = (1 << 20) as f64;
@@ -197,19 +197,35 @@ impl Placed {
     /// A block of the mesh's tree as one of the world's.
     #[inline(always)]
     pub(super) fn in_world(&self, block: Cell<'_>) -> Rows {
-        let local = block.corners();
+        let map = self.instance.transform.map(|row| row.map(f64x4::splat));
         let mut rows = [f32x8::ZERO; 10];
-        for (corner, rows) in local.iter().zip(rows.chunks_exact_mut(3)) {
-            let [x, y, z] = <[F32x8; 3]>::from(*corner).map(|c| c.to_array().map(f64::from));
-            for (row, [a, b, c, t]) in rows.iter_mut().zip(self.instance.transform) {
+        for (corner, rows) in block.corners().into_iter().zip(rows.chunks_exact_mut(3)) {
+            // Lower and upper lanes apart, because four numbers of `f64` fill a register.
+            let halves = <[F32x8; 3]>::from(corner).map(in_halves);
+            for (row, &[a, b, c, t]) in rows.iter_mut().zip(&map) {
                 // As `Instance::to_world` has it.
-                *row = f32x8::new(std::array::from_fn(|i| (a * x[i] + b * y[i] + c * z[i] + t) as f32));
+                let half = |h: usize| a * halves[0][h] + b * halves[1][h] + c * halves[2][h] + t;
+                *row = joined([half(0), half(1)]);
             }
         }
         let index = std::array::from_fn(|lane| self.first + block.index(lane));
         rows[9] = U32x8::new(index).as_real().0;
         rows
     }
+}
+
+/// The lower and the upper four lanes.
+#[inline(always)]
+fn in_halves(lanes: F32x8) -> [f64x4; 2] {
+    let [a, b, c, d, e, f, g, h] = lanes.to_array().map(f64::from);
+    [f64x4::new([a, b, c, d]), f64x4::new([e, f, g, h])]
+}
+
+/// Eight lanes of four each, rounded.
+#[inline(always)]
+fn joined(halves: [f64x4; 2]) -> f32x8 {
+    let [[a, b, c, d], [e, f, g, h]] = halves.map(f64x4::to_array);
+    f32x8::new([a, b, c, d, e, f, g, h].map(|x| x as f32))
 }
 
 impl Entrance {
