@@ -20,11 +20,11 @@ mod lobes;
 #[allow(dead_code, reason = "only small scenes are counted")]
 mod scenes;
 
-use gonio_accel::{Accel, Hit8, Intersect, Obvhs};
+use gonio_accel::{Intersect, Obvhs};
 use gonio_kernel::lobe::{Conductor, Dielectric, Eon, Lambert, Mirror, Phong, RoughDielectric};
-use gonio_kernel::{F32x8, Mask, Mask8, for_each_lobe};
+use gonio_kernel::{F32x8, for_each_lobe};
 use lobes::{Example, Lanes, Scalars, beckmann_normal, ggx_normal};
-use scenes::rays::{RaySet, sets};
+use scenes::rays::{Answers, sets};
 use scenes::{Character, Random, Scene, room};
 use std::hint::black_box;
 use std::process::ExitCode;
