@@ -67,6 +67,27 @@ fn memory_grows_by_420_bytes_per_triangle_at_most() {
 }
 
 #[test]
+fn a_forest_takes_the_memory_of_a_tree() {
+    let folder = tempfile::tempdir().expect("there is room for temporary files");
+    height_field(150, folder.path());
+    let mut forest = "[film]\nwidth = 8\nheight = 8\n[camera]\norigin = [0.0, 500.0, -900.0]\n\
+                      target = [800.0, 0.0, 800.0]\nvfov = 40.0\n[environment]\nradiance = 1.0\n"
+        .to_owned();
+    for i in 0..100 {
+        let place = [i % 10 * 160, i % 3, i / 10 * 160];
+        let one = format!("[[meshes]]\nfile = \"field-150.obj\"\ntransform = [{{ translate = {place:?} }}]\n");
+        forest.push_str(&one);
+    }
+    let path = folder.path().join("forest.toml");
+    fs::write(&path, forest).expect("there is room for temporary files");
+    let (code, said, peak) = render(&path);
+    assert_eq!(code, Some(0), "{said}");
+    let each = peak.map(|peak| peak / (100 * 2 * 150 * 150));
+    println!("{each:?} bytes per triangle, program included");
+    assert!(each.is_none_or(|each| each < 30), "{each:?} bytes per triangle");
+}
+
+#[test]
 fn files_that_are_only_large_are_refused_in_little_memory() {
     const SIZE: usize = 40 << 20;
     let folder = tempfile::tempdir().expect("there is room for temporary files");

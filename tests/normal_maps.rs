@@ -1,7 +1,7 @@
 //! Normal maps in scene files: which way a bump points, what light is lost, and which files are refused.
 
 use crate::support::{Folder, repository};
-use gonio_accel::Intersect;
+use gonio_accel::{Intersect, Sharing};
 use gonio_kernel::Vec3;
 use gonio_tracer::normal_map::NormalMap;
 use gonio_tracer::scene::{Material, Scene};
@@ -36,7 +36,11 @@ fn constant(n: [f32; 3]) -> NormalMap {
 }
 
 fn rendered(scene: &Scene, change: impl Fn(&mut RenderSettings)) -> Rendering {
-    let world = World::new(scene).expect("the scene is sound");
+    rendered_by(Sharing::Never, scene, change)
+}
+
+fn rendered_by(sharing: Sharing, scene: &Scene, change: impl Fn(&mut RenderSettings)) -> Rendering {
+    let world = World::by(scene, sharing).expect("the scene is sound");
     let mut settings = RenderSettings { layers: true, ..RenderSettings::of(scene, &world) };
     change(&mut settings);
     let accel = Backend::Obvhs.build(world.geometry(), Intersect::Robust).expect("obvhs needs nothing");
@@ -51,11 +55,14 @@ fn assert_normals(scene: &mut Scene, pairs: [([f32; 3], [f32; 3]); 2]) {
     }
 }
 
-/// The normal that every pixel sees.
+/// The normal that every pixel sees, whether the mesh is laid out or kept once.
 #[track_caller]
 fn assert_normal(scene: &Scene, expected: [f32; 3]) {
-    for normal in rendered(scene, |_| ()).layers.expect("asked for").normal {
-        assert!((Vec3::from(normal) - Vec3::from(expected)).length() < 1e-4, "{normal:?}, not {expected:?}");
+    for sharing in [Sharing::Never, Sharing::Always] {
+        for normal in rendered_by(sharing, scene, |_| ()).layers.expect("asked for").normal {
+            let off = (Vec3::from(normal) - Vec3::from(expected)).length();
+            assert!(off < 1e-4, "{normal:?}, not {expected:?}, {sharing:?}");
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::support::{Random, cornell_box, repository};
 use glam::{DAffine3, DVec3};
-use gonio_accel::Intersect;
+use gonio_accel::{Intersect, Obvhs, ObvhsOptions, Sharing};
 use gonio_kernel::Rgb;
 use gonio_tracer::image::Picture;
 use gonio_tracer::scene::{
@@ -83,28 +83,63 @@ fn differing(a: &Rendering, b: &Rendering) -> Vec<bool> {
     a.picture.rgb.iter().zip(&b.picture.rgb).map(differs).collect()
 }
 
+/// Fails if more than isolated pixels, or the means, differ by more than rounding.
+fn same_but_for_isolated_pixels(name: &str, expected: &Rendering, found: &Rendering) {
+    let (a, b) = (mean(expected), mean(found));
+    let off = (0..3).map(|c| (b[c] / a[c] - 1.0).abs()).fold(0.0, f64::max);
+    let pixels = differing(expected, found);
+    let count = count(&pixels);
+    println!("{name}: mean off by {off:.1e}, {count} of {} pixels differ", pixels.len());
+    assert!(off <= 1e-4, "{name}: {b:?} against {a:?}");
+    assert!(count * 1000 <= pixels.len(), "{name}: {count} pixels differ");
+    let width = expected.picture.width as usize;
+    let at = |i: usize| pixels.get(i).copied().unwrap_or(false);
+    let touch = (0..pixels.len()).find(|&i| at(i) && (at(i + width) || (i + 1) % width != 0 && at(i + 1)));
+    assert_eq!(touch, None, "{name}: two differing pixels touch");
+}
+
+fn count(pixels: &[bool]) -> usize {
+    pixels.iter().filter(|differs| **differs).count()
+}
+
+/// The shipped spheres, in little.
+fn spheres() -> Scene {
+    let mut scene = Scene::load(&repository("scenes/spheres.toml")).expect("the shipped scene loads");
+    (scene.film.width, scene.film.height, scene.film.spp) = (96, 64, 16);
+    scene
+}
+
 #[test]
 fn backends_that_are_exact_up_to_rounding_render_the_same_picture_but_for_isolated_pixels() {
-    let mut spheres = Scene::load(&repository("scenes/spheres.toml")).expect("the shipped scene loads");
-    (spheres.film.width, spheres.film.height, spheres.film.spp) = (96, 64, 16);
-    for (name, scene) in [("Cornell box", cornell_box(64, 16)), ("varied", varied()), ("spheres", spheres)] {
+    for (name, scene) in [("Cornell box", cornell_box(64, 16)), ("varied", varied()), ("spheres", spheres())] {
         let expected = rendered(&scene, Backend::Obvhs, |_| ());
-        let count = |pixels: &[bool]| pixels.iter().filter(|differs| **differs).count();
         let other = differing(&expected, &rendered(&scene, Backend::Obvhs, |s| s.seed = 1));
         assert!(count(&other) * 3 > other.len(), "{name}: {} pixels differ with another seed", count(&other));
         for backend in Backend::ALL.into_iter().filter(|backend| !backend.is_exact()) {
-            let found = rendered(&scene, backend, |_| ());
-            let (a, b) = (mean(&expected), mean(&found));
-            let off = (0..3).map(|c| (b[c] / a[c] - 1.0).abs()).fold(0.0, f64::max);
-            let pixels = differing(&expected, &found);
-            println!("{name}, {backend}: mean off by {off:.1e}, {} of {} pixels differ", count(&pixels), pixels.len());
-            assert!(off <= 1e-4, "{name}, {backend}: {b:?} against {a:?}");
-            assert!(count(&pixels) * 1000 <= pixels.len(), "{name}, {backend}: {} pixels differ", count(&pixels));
-            let width = expected.picture.width as usize;
-            let at = |i: usize| pixels.get(i).copied().unwrap_or(false);
-            let touch = (0..pixels.len()).find(|&i| at(i) && (at(i + width) || (i + 1) % width != 0 && at(i + 1)));
-            assert_eq!(touch, None, "{name}, {backend}: two differing pixels touch");
+            same_but_for_isolated_pixels(&format!("{name}, {backend}"), &expected, &rendered(&scene, backend, |_| ()));
         }
+    }
+}
+
+#[test]
+fn meshes_that_are_kept_once_look_as_if_they_were_laid_out() {
+    let mut mirrored = spheres();
+    for instance in &mut mirrored.instances[1..4] {
+        instance.transform.matrix3.x_axis *= -1.0;
+    }
+    let rendered = |scene: &Scene, world: Sharing, tree: Sharing| {
+        let world = World::by(scene, world).expect("the scene is sound");
+        let settings = RenderSettings::of(scene, &world);
+        let options = ObvhsOptions { sharing: tree, ..Default::default() };
+        let accel = Obvhs::always_tree(world.geometry(), options);
+        render(&world, &accel, &settings, &mut |_| ControlFlow::Continue(()))
+    };
+    for (name, scene) in [("varied", varied()), ("spheres", spheres()), ("mirrored spheres", mirrored)] {
+        let laid_out = rendered(&scene, Sharing::Never, Sharing::Never);
+        let kept = rendered(&scene, Sharing::Always, Sharing::Always);
+        same_but_for_isolated_pixels(name, &laid_out, &kept);
+        let hash = rendered(&scene, Sharing::Always, Sharing::Never).stats.film_hash;
+        assert_eq!(kept.stats.film_hash, hash, "{name}: by a tree that is laid out");
     }
 }
 
@@ -129,6 +164,30 @@ fn scenes_have_the_same_fingerprint_exactly_if_they_look_the_same() {
     for (i, print) in prints.iter().enumerate() {
         assert!(!prints[..i].contains(print), "change {i} does not show");
     }
+}
+
+#[test]
+fn which_instance_shows_which_of_two_meshes_that_are_kept_once_is_in_the_fingerprint() {
+    let mut scene = spheres();
+    let mesh = scene.instances[1].mesh;
+    let mut other = scene.meshes[mesh].clone();
+    other.positions[0][1] *= 1.5;
+    scene.meshes.push(other);
+    let other = scene.meshes.len() - 1;
+    let print = |which: [usize; 4]| {
+        let mut scene = scene.clone();
+        let first = scene.instances[1].clone();
+        let all = which.iter().enumerate().map(|(i, &mesh)| {
+            let mut instance = first.clone();
+            instance.mesh = mesh;
+            instance.transform.translation.x += i as f64;
+            instance
+        });
+        scene.instances.extend(all);
+        World::by(&scene, Sharing::Always).expect("the scene is sound").fingerprint()
+    };
+    assert_eq!(print([mesh, mesh, other, other]), print([mesh, mesh, other, other]));
+    assert_ne!(print([mesh, mesh, other, other]), print([mesh, other, mesh, other]));
 }
 
 #[test]

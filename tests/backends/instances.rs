@@ -3,6 +3,7 @@
 use super::{Witness, bits, blocked, hits, hits_by, ordinary_rays, telling_rays, tiles_of_rays};
 use crate::support::{Random, grid, hills, soup, sphere};
 use gonio_accel::{Brute, Geometry, Instance, Intersect, Mesh, Obvhs, ObvhsOptions, RayKind, Sharing};
+use gonio_kernel::F32x8;
 
 type Map = [[f64; 4]; 3];
 
@@ -43,6 +44,14 @@ fn geometries() -> Vec<(&'static str, Geometry)> {
     mixed.extend(several(1, 3, 0.4, 1.0));
     mixed.extend([(0, Instance::IDENTITY), (1, flat), (2, Instance::IDENTITY)]);
     let same = several(0, 1, 1.0, 0.5)[0];
+    let far = (
+        0,
+        [0, 1, 2].map(|row| {
+            let mut far = Instance::IDENTITY[row];
+            far[3] = f64::from(1 << 20);
+            far
+        }),
+    );
     let mut other = Random(29);
     vec![
         ("one sphere, turned", placed(vec![sphere(12, [0.0; 3])], several(0, 1, 1.0, 0.5))),
@@ -51,6 +60,7 @@ fn geometries() -> Vec<(&'static str, Geometry)> {
         ("spheres of a thousandth", placed(vec![sphere(10, [0.0; 3])], several(0, 12, 1e-3, 1.0))),
         ("spheres from a small model", placed(vec![sphere(8, [0.0; 3])], several(0, 3, 1e3, 500.0))),
         ("spheres far from their origin", placed(vec![sphere(10, [500.0, -200.0, 300.0])], several(0, 3, 1.0, 0.0))),
+        ("a sphere whose triangles are as small as the rounding", placed(vec![sphere(40, [0.0; 3])], vec![far])),
         ("soups", placed(vec![soup(200, &mut other)], several(0, 4, 1.0, 0.5))),
         ("needles", placed(vec![needles(200, &mut other)], several(0, 4, 1.0, 0.5))),
         (
@@ -82,6 +92,14 @@ fn shared_trees_agree_with_brute_to_the_last_bit() {
             }
         }
         assert_eq!(blocked(&brute, &rays, None), blocked(&tree, &rays, None), "{name}");
+        // Once more, up to no farther than what they hit.
+        let found: Vec<f32> = expected.iter().map(|hit| hit.map_or(1.0, |hit| hit.t)).collect();
+        for (ray, t) in rays.iter_mut().zip(found.chunks(8)) {
+            ray.t_max = F32x8::from_fn(|lane| t[lane]);
+        }
+        for (i, (a, b)) in hits(&brute, &rays).iter().zip(hits(&tree, &rays)).enumerate() {
+            assert_eq!(bits(a), bits(&b), "{name}, just as far: lane {} of {:?}", i % 8, rays[i / 8]);
+        }
         assert!(10 * expected.iter().flatten().count() > expected.len(), "{name}: hardly a ray meets something");
     }
 }

@@ -108,6 +108,11 @@ impl Instance {
     /// The mesh where it is.
     pub const IDENTITY: [[f64; 4]; 3] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
+    /// Whether the map is [`Instance::IDENTITY`], to the sign of its zeros: −0 added to −0 is none of 0.
+    fn is_identity(&self) -> bool {
+        self.transform.as_flattened().iter().zip(Self::IDENTITY.as_flattened()).all(|(a, b)| a.to_bits() == b.to_bits())
+    }
+
     /// The world position of a point of the mesh.
     pub fn to_world(&self, p: [f32; 3]) -> [f32; 3] {
         let [x, y, z] = p.map(f64::from);
@@ -152,7 +157,7 @@ impl Geometry {
         let order = Order {
             starts,
             meshes: instances.iter().map(|instance| instance.mesh).collect(),
-            is_placed: instances.iter().map(|instance| instance.transform != Instance::IDENTITY).collect(),
+            is_placed: instances.iter().map(|instance| !instance.is_identity()).collect(),
         };
         Ok(Self { meshes, instances, order })
     }

@@ -62,9 +62,8 @@ pub enum ObvhsPreset {
     High,
 }
 
-/// Which instances share the tree of their mesh, instead of being laid out in the world. No hit depends on it. A shared tree saves
-/// memory and time to build; rays take longer, because boxes of instances overlap and a block's corners are moved to the
-/// world whenever a ray comes to it.
+/// Which instances share what is kept of their mesh, instead of being laid out in the world. No hit depends on it. A shared tree saves
+/// memory and time to build; rays take about twice as long, because what they meet is moved to the world whenever they do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sharing {
     /// Those of meshes that are placed more than once, if all instances together have more than four million triangles.
@@ -77,23 +76,27 @@ pub enum Sharing {
 }
 
 impl Sharing {
-    /// More triangles than that are not laid out if they need not be: a quarter of a gigabyte.
-    const LARGE: usize = 1 << 22;
+    /// More triangles than that are not laid out if they need not be: their tree would take a quarter of a gigabyte.
+    pub const LARGE: usize = 1 << 22;
+
+    /// Whether the instances of a mesh share it, if all instances together have so many triangles, and the mesh so many
+    /// instances.
+    pub fn shares(self, triangles: usize, instances: usize) -> bool {
+        match self {
+            Self::Large => triangles > Self::LARGE && instances > 1,
+            Self::Never => false,
+            Self::Always => true,
+        }
+    }
 
     /// For each instance that shares a tree, the way to its mesh.
     fn ways(self, geometry: &Geometry) -> Vec<Option<Way>> {
         let mut uses = vec![0; geometry.meshes().len()];
         geometry.instances().iter().for_each(|instance| uses[instance.mesh as usize] += 1);
-        let is_large = geometry.triangle_count() > Self::LARGE;
         let way = |instance: &Instance| {
             let mesh = instance.mesh as usize;
-            let shares = match self {
-                Self::Large => is_large && uses[mesh] > 1,
-                Self::Never => false,
-                Self::Always => true,
-            };
-            let is_empty = geometry.meshes()[mesh].triangles.is_empty();
-            (shares && !is_empty).then(|| Way::to(instance)).flatten()
+            let shares = self.shares(geometry.triangle_count(), uses[mesh]);
+            (shares && !geometry.meshes()[mesh].triangles.is_empty()).then(|| Way::to(instance)).flatten()
         };
         geometry.instances().iter().map(way).collect()
     }

@@ -64,11 +64,10 @@ impl ShadingPoints {
     pub(crate) fn new(world: &World, plan: Plan, batch: &Batch, wo: Vec3<F32x8>) -> Self {
         let bary = [batch.hit(|h| &h.bary[0]), batch.hit(|h| &h.bary[1])];
         let t = batch.hit(|h| &h.t);
-        let index = each_lane(|l| {
-            let (instance, prim) = batch.hit_place(l);
-            world.triangle_index(instance, prim)
+        let triangles = each_lane(|l| {
+            let (instance, _, prim) = batch.hit_place(l);
+            world.triangle(instance, prim)
         });
-        let triangles = each_lane(|l| &world.triangles[index[l]]);
         let corner = |c: usize| Vec3::from_lanes(|l| triangles[l].corners[c]);
         let corners = [corner(0), corner(1), corner(2)];
         let winding = Vec3::from_lanes(|l| triangles[l].normal);
@@ -81,15 +80,14 @@ impl ShadingPoints {
         let by_vertex = plan.smooth_normals || plan.uvs();
         let vertices = if by_vertex {
             each_lane(|l| {
-                let (instance, prim) = batch.hit_place(l);
-                world.vertex_indices(instance, prim)
+                let (instance, mesh, prim) = batch.hit_place(l);
+                world.vertex_indices(instance, mesh, prim)
             })
         } else {
             [[0; 3]; F32x8::LANES]
         };
         if plan.smooth_normals {
-            let flat = Vec3::new(0.0, 0.0, 0.0);
-            let at = |c: usize| Vec3::from_lanes(|l| world.normals.get(vertices[l][c]).copied().unwrap_or(flat));
+            let at = |c: usize| Vec3::from_lanes(|l| world.normal(batch.hit_place(l).0, vertices[l][c]));
             let b0 = F32x8::ONE - bary[0] - bary[1];
             let n = ((at(0) * b0).along(bary[0], at(1)).along(bary[1], at(2)) * side).normalize_or(normal);
             shading = facing(n, normal, wo);
@@ -121,8 +119,9 @@ impl ShadingPoints {
                 let (dv1, dv2) = (v[1] - v[0], v[2] - v[0]);
                 let det = (u[1] - u[0]) * dv2 - (u[2] - u[0]) * dv1;
                 let (e1, e2) = (corners[1] - corners[0], corners[2] - corners[0]);
-                let handed = F32x8::ONE.copysign(det);
-                let tangent = (e1 * dv2 - e2 * dv1) * handed;
+                let tangent = (e1 * dv2 - e2 * dv1) * F32x8::ONE.copysign(det);
+                // Where a mesh that is kept once is mirrored, its corners go round the other way.
+                let handed = F32x8::ONE.copysign(det) * F32x8::ONE.copysign(winding.dot(e1.cross(e2)));
                 let along = Frame { z: shading, ..Frame::from_normal_tangent(shading, tangent) };
                 frame = Frame::select(along_u, along, frame);
                 if mapped.any() {

@@ -214,10 +214,11 @@ impl<'a> Batch<'a> {
         F32x8::from_fn(|i| field(self.hits[i]).lane(self.lane[i]))
     }
 
-    /// Instance and prim of one hit.
+    /// Instance, mesh and prim of one hit.
     #[inline(always)]
-    pub(crate) fn hit_place(&self, i: usize) -> (u32, u32) {
-        (self.hits[i].instance.lane(self.lane[i]), self.hits[i].prim.lane(self.lane[i]))
+    pub(crate) fn hit_place(&self, i: usize) -> (u32, u32, u32) {
+        let (hit, lane) = (&self.hits[i], self.lane[i]);
+        (hit.instance.lane(lane), hit.mesh.lane(lane), hit.prim.lane(lane))
     }
 }
 

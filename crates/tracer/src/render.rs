@@ -365,7 +365,7 @@ impl TileWorker {
             let kind = if depth == 0 { RayKind::Coherent } else { RayKind::Incoherent };
             self.hits.resize(self.queue.rays.len(), Hit8::miss());
             accel.closest(kind, &self.queue.rays, &mut self.hits);
-            let material_of = |instance, prim| ctx.world.triangles[ctx.world.triangle_index(instance, prim)].material;
+            let material_of = |instance, prim| ctx.world.material(instance, prim);
             self.order.sort(&self.queue.rays, &self.hits, materials.len(), material_of);
             stats.closest_rays += self.order.lanes.len() as u64;
 

@@ -1,8 +1,12 @@
 //! The world: a scene made ready to be traced.
 //!
 //! Everything is placed, recentred and rounded once. The middle of the scene becomes the origin while positions are still
-//! `f64`, so a scene far from its own origin (georeferenced data) keeps its precision. Each instance's triangles are laid
-//! out in the world; triangles of a mirrored instance swap two corners, so that the front stays the front.
+//! `f64`, so a scene far from its own origin (georeferenced data) keeps its precision.
+//!
+//! Each instance's triangles are laid out in the world, as long as that takes little memory ([`Sharing::LARGE`] triangles): then
+//! every lookup is one. In larger scenes a mesh that is placed more than once is kept once, about a middle of its own, and its
+//! corners and normals are moved to the world wherever a ray meets them. The front of a mirrored instance stays the front: its
+//! triangles swap two corners, or where a mesh is kept once, its normals turn.
 
 use crate::fingerprint::Fingerprint;
 use crate::light::{Emitter, Lights};
@@ -12,7 +16,7 @@ use crate::plan::Plan;
 use crate::scene::{Camera, FilmSettings, Instance, Loading, Mesh, Scene, SceneError, Stage};
 use crate::texture::Texture;
 use glam::{DMat3, DVec3};
-use gonio_accel::{Geometry, GeometryError, Ray8};
+use gonio_accel::{Geometry, GeometryError, Ray8, Sharing};
 use gonio_kernel::{F32x8, Real, Rgb, Vec3};
 use std::borrow::Cow;
 use std::path::Path;
@@ -25,12 +29,14 @@ pub struct World {
     geometry: Geometry,
     /// Where each instance's triangles and vertices start in the lists below.
     offsets: Vec<Offset>,
-    /// Vertices placed so far; may outgrow what 32 bits count, because instances share no memory.
+    /// Those instances whose mesh is kept once.
+    placements: Vec<Placement>,
+    /// Vertices in the lists below; may outgrow what 32 bits count.
     vertices: usize,
-    /// In the order (instance, prim).
-    pub(crate) triangles: Vec<Triangle>,
+    /// In the order (instance, prim) of what is laid out; a mesh that is kept once is there once, in its own coordinates.
+    triangles: Vec<Triangle>,
     /// One entry per vertex if the plan has smooth normals, else empty; a zero normal means the geometric one.
-    pub(crate) normals: Vec<Vec3<f32>>,
+    normals: Vec<Vec3<f32>>,
     /// One entry per vertex if something of the plan looks at them, else empty.
     pub(crate) uvs: Vec<[f32; 2]>,
     pub(crate) materials: Vec<PreparedMaterial>,
@@ -45,6 +51,25 @@ pub struct World {
 struct Offset {
     triangle: u32,
     vertex: usize,
+    /// Index into [`World::placements`] if what starts there is not laid out.
+    placement: Option<u32>,
+}
+
+/// How a mesh that is kept once comes to the world.
+#[derive(Clone, Debug)]
+struct Placement {
+    instance: gonio_accel::Instance,
+    normal_matrix: DMat3,
+    /// −1 if mirrored.
+    side: f32,
+}
+
+impl Placement {
+    /// A triangle of the mesh, in the world: with the very corners that rays are cast at.
+    fn place(&self, triangle: &Triangle) -> Triangle {
+        let corners = triangle.corners.map(|c| Vec3::from(self.instance.to_world(c.into())));
+        Triangle { corners, normal: unit_normal(&corners) * self.side, ..*triangle }
+    }
 }
 
 /// What shading needs of every triangle.
@@ -74,8 +99,16 @@ impl World {
     /// # Errors
     /// If the scene cannot be cast at: too many triangles, or positions that overflow `f32`.
     pub fn new(scene: &Scene) -> Result<Self, SceneError> {
+        Self::by(scene, Sharing::default())
+    }
+
+    /// Places the scene; `sharing` says which meshes are kept once, and not laid out. O(triangles).
+    ///
+    /// # Errors
+    /// As [`World::new`].
+    pub fn by(scene: &Scene, sharing: Sharing) -> Result<Self, SceneError> {
         let images = (scene.textures.clone(), scene.normal_maps.clone());
-        Self::place(scene, Cow::Borrowed(&scene.meshes[..]), images, &mut |_| ())
+        Self::place(scene, Cow::Borrowed(&scene.meshes[..]), images, sharing, &mut |_| ())
     }
 
     /// Places the scene and takes its meshes and images out of it, each mesh freed once it is placed: for scenes that fill
@@ -86,13 +119,14 @@ impl World {
     pub fn take(scene: &mut Scene, progress: &mut dyn FnMut(Loading)) -> Result<Self, SceneError> {
         let images = (std::mem::take(&mut scene.textures), std::mem::take(&mut scene.normal_maps));
         let meshes = std::mem::take(&mut scene.meshes);
-        Self::place(scene, Cow::Owned(meshes), images, progress)
+        Self::place(scene, Cow::Owned(meshes), images, Sharing::default(), progress)
     }
 
     fn place(
         scene: &Scene,
         mut meshes: Cow<'_, [Mesh]>,
         (textures, normal_maps): (Vec<Texture>, Vec<NormalMap>),
+        sharing: Sharing,
         progress: &mut dyn FnMut(Loading),
     ) -> Result<Self, SceneError> {
         let refuse = |message: String| SceneError::file(Path::new("scene"), message);
@@ -126,6 +160,7 @@ impl World {
             view: View::new(&scene.camera, &scene.film, center),
             geometry: Geometry::new(Vec::new(), Vec::new()).map_err(|e| refuse(e.to_string()))?,
             offsets: Vec::new(),
+            placements: Vec::new(),
             vertices: 0,
             triangles: Vec::new(),
             normals: Vec::new(),
@@ -143,26 +178,40 @@ impl World {
         if of > Geometry::MOST_TRIANGLES {
             return Err(refuse(GeometryError::TooMany(of).to_string()));
         }
-        world.triangles.reserve_exact(of);
-        let mut placed = Vec::new();
+        let mut kept: Vec<Option<Kept>> =
+            uses.iter().map(|&uses| sharing.shares(of, uses).then(Kept::default)).collect();
+        let times = |mesh: usize| if kept[mesh].is_some() { uses[mesh].min(1) } else { uses[mesh] };
+        world.triangles.reserve_exact((0..meshes.len()).map(|mesh| times(mesh) * meshes[mesh].triangles.len()).sum());
+        let (mut casting, mut instances, mut done) = (Vec::new(), Vec::new(), 0);
         for instance in &scene.instances {
-            placed.push(world.place_one(instance, &meshes[instance.mesh], center, &order));
+            let mesh = &meshes[instance.mesh];
+            instances.push(match &mut kept[instance.mesh] {
+                Some(kept) => world.place_kept(instance, mesh, kept, center, &order, &mut casting),
+                None => {
+                    casting.push(world.lay_out(instance, mesh, center, &order));
+                    let mesh = casting.len() as u32 - 1;
+                    gonio_accel::Instance { mesh, transform: gonio_accel::Instance::IDENTITY }
+                }
+            });
+            done += casting[instances[instances.len() - 1].mesh as usize].triangles.len() as u64;
             uses[instance.mesh] -= 1;
-            if let (Cow::Owned(meshes), 0) = (&mut meshes, uses[instance.mesh]) {
+            let is_done = uses[instance.mesh] == 0 || kept[instance.mesh].is_some();
+            if let (Cow::Owned(meshes), true) = (&mut meshes, is_done) {
                 meshes[instance.mesh] = Mesh::default();
             }
-            progress(Loading { stage: Stage::Placing, done: world.triangles.len() as u64, of: of as u64 });
+            progress(Loading { stage: Stage::Placing, done, of: of as u64 });
         }
-        let instances = (0..placed.len() as u32)
-            .map(|mesh| gonio_accel::Instance { mesh, transform: gonio_accel::Instance::IDENTITY })
-            .collect();
-        world.geometry = Geometry::new(placed, instances).map_err(|e| refuse(e.to_string()))?;
+        world.geometry = Geometry::new(casting, instances).map_err(|e| refuse(e.to_string()))?;
 
-        let emitters = world.triangles.iter().filter_map(|t| {
-            let radiance = world.materials[t.material as usize].emission;
-            (radiance.luminance() > 0.0).then_some(Emitter { corners: t.corners, normal: t.normal, radiance })
-        });
-        world.lights = Lights::new(emitters.collect(), &scene.environment);
+        let emitter = |(instance, prim): (u32, u32)| {
+            let radiance = world.materials[world.material(instance, prim) as usize].emission;
+            (radiance.luminance() > 0.0).then(|| {
+                let t = world.triangle(instance, prim);
+                Emitter { corners: t.corners, normal: t.normal, radiance }
+            })
+        };
+        let emitters = world.places().filter_map(emitter).collect();
+        world.lights = Lights::new(emitters, &scene.environment);
         world.plan.environment = world.lights.has_sky();
         world.plan.area_lights = world.triangles.iter().any(|t| world.materials[t.material as usize].emits());
         Ok(world)
@@ -202,6 +251,9 @@ impl World {
             corners.for_each(|x| print.bytes(&x.to_le_bytes()));
             print.bytes(&triangle.material.to_le_bytes());
         }
+        for placement in &self.placements {
+            print.bytes(format!("{:?}", placement.instance).as_bytes());
+        }
         for normal in &self.normals {
             [normal.x, normal.y, normal.z].iter().for_each(|x| print.bytes(&x.to_le_bytes()));
         }
@@ -217,49 +269,120 @@ impl World {
         print.text()
     }
 
-    /// The place of a hit in the list of triangles.
+    /// The material of a triangle that was hit.
     #[inline(always)]
-    pub(crate) fn triangle_index(&self, instance: u32, prim: u32) -> usize {
-        (self.offsets[instance as usize].triangle + prim) as usize
+    pub(crate) fn material(&self, instance: u32, prim: u32) -> u32 {
+        self.triangles[(self.offsets[instance as usize].triangle + prim) as usize].material
+    }
+
+    /// A triangle that was hit.
+    #[inline(always)]
+    pub(crate) fn triangle(&self, instance: u32, prim: u32) -> Triangle {
+        let offset = &self.offsets[instance as usize];
+        let triangle = &self.triangles[(offset.triangle + prim) as usize];
+        match offset.placement {
+            None => *triangle,
+            Some(placement) => self.placements[placement as usize].place(triangle),
+        }
+    }
+
+    /// Instance and prim of all triangles, in order.
+    fn places(&self) -> impl Iterator<Item = (u32, u32)> {
+        let count = |instance: u32| {
+            let mesh = self.geometry.instances()[instance as usize].mesh;
+            self.geometry.meshes()[mesh as usize].triangles.len() as u32
+        };
+        let instances = 0..self.offsets.len() as u32;
+        instances.flat_map(move |instance| (0..count(instance)).map(move |prim| (instance, prim)))
     }
 
     /// The places of a hit's three corners in the lists of vertices.
     #[inline(always)]
-    pub(crate) fn vertex_indices(&self, instance: u32, prim: u32) -> [usize; 3] {
+    pub(crate) fn vertex_indices(&self, instance: u32, mesh: u32, prim: u32) -> [usize; 3] {
         let first = self.offsets[instance as usize].vertex;
-        self.geometry.meshes()[instance as usize].triangles[prim as usize].map(|v| first + v as usize)
+        self.geometry.meshes()[mesh as usize].triangles[prim as usize].map(|v| first + v as usize)
+    }
+
+    /// The shading normal of a vertex of an instance; 0 for the geometric one.
+    #[inline(always)]
+    pub(crate) fn normal(&self, instance: u32, vertex: usize) -> Vec3<f32> {
+        let Some(&normal) = self.normals.get(vertex) else { return Vec3::new(0.0, 0.0, 0.0) };
+        match self.offsets[instance as usize].placement {
+            None => normal,
+            Some(placement) => turn(self.placements[placement as usize].normal_matrix, normal.into()),
+        }
     }
 
     /// The largest distance of a corner from the camera's plane; at least 0.
     pub(crate) fn farthest_depth(&self) -> f32 {
         let depth = |corner: &Vec3<f32>| (*corner - self.view.origin).dot(self.view.forward);
-        self.triangles.iter().flat_map(|t| &t.corners).map(depth).fold(0.0, f32::max)
+        let corners = self.places().flat_map(|(instance, prim)| self.triangle(instance, prim).corners);
+        corners.map(|corner| depth(&corner)).fold(0.0, f32::max)
     }
 
     /// Appends an instance's triangles and returns them as a mesh for casting.
-    fn place_one(&mut self, instance: &Instance, mesh: &Mesh, center: DVec3, order: &[u32]) -> gonio_accel::Mesh {
-        self.offsets.push(Offset { triangle: self.triangles.len() as u32, vertex: self.vertices });
-        self.vertices += mesh.positions.len();
+    fn lay_out(&mut self, instance: &Instance, mesh: &Mesh, center: DVec3, order: &[u32]) -> gonio_accel::Mesh {
         let to_world = instance.transform;
-        let positions: Vec<[f32; 3]> = mesh
-            .positions
-            .iter()
-            .map(|&p| (to_world.transform_point3(p.into()) - center).as_vec3().to_array())
-            .collect();
+        let place = |p: DVec3| (to_world.transform_point3(p) - center).as_vec3();
         let mirrored = to_world.matrix3.determinant() < 0.0;
-        let normal_matrix = to_world.matrix3.inverse().transpose();
         let front = |t: &[u32; 3]| if mirrored { [t[0], t[2], t[1]] } else { *t };
-        let triangles: Vec<[u32; 3]> = mesh.triangles.iter().map(front).collect();
+        let normal_matrix = normal_matrix(instance);
+        let offset = self.append(mesh, order, place, front, |n| turn(normal_matrix, n));
+        self.offsets.push(offset.0);
+        offset.1
+    }
 
+    /// Places a mesh that is kept once, and appends it if it is not there yet.
+    fn place_kept(
+        &mut self,
+        instance: &Instance,
+        mesh: &Mesh,
+        kept: &mut Kept,
+        center: DVec3,
+        order: &[u32],
+        casting: &mut Vec<gonio_accel::Mesh>,
+    ) -> gonio_accel::Instance {
+        let (number, middle, offset) = *kept.get_or_insert_with(|| {
+            let middle = middle_of(mesh.positions.iter().map(|&p| p.into()));
+            let (offset, own) = self.append(mesh, order, |p| (p - middle).as_vec3(), |t| *t, Vec3::from);
+            casting.push(own);
+            (casting.len() as u32 - 1, middle, offset)
+        });
+        let matrix = instance.transform.matrix3;
+        let start = instance.transform.transform_point3(middle) - center;
+        let row = |row: usize| {
+            let m = matrix.row(row);
+            [m.x, m.y, m.z, start[row]]
+        };
+        let cast = gonio_accel::Instance { mesh: number, transform: [row(0), row(1), row(2)] };
+        let side = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };
+        self.offsets.push(Offset { placement: Some(self.placements.len() as u32), ..offset });
+        self.placements.push(Placement { instance: cast, normal_matrix: normal_matrix(instance), side });
+        cast
+    }
+
+    /// Appends a mesh to all lists; returns where it starts, and what rays are cast at.
+    fn append(
+        &mut self,
+        mesh: &Mesh,
+        order: &[u32],
+        place: impl Fn(DVec3) -> glam::Vec3,
+        front: impl Fn(&[u32; 3]) -> [u32; 3],
+        turn: impl Fn([f32; 3]) -> Vec3<f32>,
+    ) -> (Offset, gonio_accel::Mesh) {
+        let offset = Offset { triangle: self.triangles.len() as u32, vertex: self.vertices, placement: None };
+        let count = mesh.positions.len();
+        self.vertices += count;
+        let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|&p| place(p.into()).to_array()).collect();
+        let triangles: Vec<[u32; 3]> = mesh.triangles.iter().map(front).collect();
         let corners = triangles.iter().map(|t| t.map(|v| Vec3::from(positions[v as usize])));
         self.triangles.extend(corners.zip(&mesh.materials).map(|(corners, &m)| Triangle {
             normal: unit_normal(&corners),
             corners,
             material: order[m as usize],
         }));
-        let count = mesh.positions.len();
         if self.plan.smooth_normals {
-            let turned = mesh.normals.iter().flatten().map(|&n| turn(normal_matrix, n));
+            let turned = mesh.normals.iter().flatten().map(|&n| turn(n));
             let none = Vec3::new(0.0, 0.0, 0.0);
             self.normals.extend(turned.chain(std::iter::repeat(none)).take(count));
         }
@@ -267,8 +390,16 @@ impl World {
             let uvs = mesh.uvs.iter().flatten().copied();
             self.uvs.extend(uvs.chain(std::iter::repeat([0.0; 2])).take(count));
         }
-        gonio_accel::Mesh { positions, triangles }
+        (offset, gonio_accel::Mesh { positions, triangles })
     }
+}
+
+/// A mesh that is kept once, once it is there: its number, the middle that it is kept about, and where it starts.
+type Kept = Option<(u32, DVec3, Offset)>;
+
+/// What normals are multiplied by.
+fn normal_matrix(instance: &Instance) -> DMat3 {
+    instance.transform.matrix3.inverse().transpose()
 }
 
 fn turn(normal_matrix: DMat3, n: [f32; 3]) -> Vec3<f32> {
@@ -282,14 +413,14 @@ fn unit_normal([a, b, c]: &[Vec3<f32>; 3]) -> Vec3<f32> {
 
 /// The middle of everything that is placed.
 fn center(instances: &[Instance], meshes: &[Mesh]) -> DVec3 {
-    let placed = instances
-        .iter()
-        .flat_map(|i| meshes[i.mesh].positions.iter().map(move |&p| i.transform.transform_point3(p.into())));
-    let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for p in placed {
-        lo = lo.min(p);
-        hi = hi.max(p);
-    }
+    let corners = |i: &Instance| meshes[i.mesh].positions.iter();
+    let placed = instances.iter().flat_map(|i| corners(i).map(move |&p| i.transform.transform_point3(p.into())));
+    middle_of(placed)
+}
+
+/// The middle of the box of some points; the origin if there is none.
+fn middle_of(points: impl Iterator<Item = DVec3>) -> DVec3 {
+    let (lo, hi) = points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)));
     if lo.is_finite() && hi.is_finite() { lo * 0.5 + hi * 0.5 } else { DVec3::ZERO }
 }
 

@@ -311,7 +311,7 @@ impl Walk {
             let down = <[f32; 3]>::from(beam.inverse()).map(|i| usize::from(i < 0.0));
             (other.placed, other.mesh) = (Some(entrance.placed), Stance { beam, facing: Facing::of(down) });
         }
-        self.take_stance(&other.mesh, entrance.slack(other.slack));
+        self.take_stance(&other.mesh, entrance.slack(&other.world.beam, other.slack));
         (stacks.children[self.top], stacks.nears[self.top]) = (Child::EXIT.0, f32::NEG_INFINITY);
         self.top += 1;
         self.next = entrance.subtree;

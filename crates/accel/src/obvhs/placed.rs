@@ -161,7 +161,7 @@ impl Placed {
     /// An instance of the mesh, whose first triangle has that place.
     pub(super) fn new(instance: &Instance, way: Way, mesh: &Shared, first: u32) -> Self {
         let terms = |[a, b, c, t]: [f64; 4]| (a.abs() + b.abs() + c.abs()) * mesh.largest + t.abs();
-        let rounding = 2.0 * U * instance.transform.map(terms).into_iter().fold(0.0, f64::max);
+        let rounding = 4.0 * U * instance.transform.map(terms).into_iter().fold(0.0, f64::max);
         let error = way.stretch.map(|stretch| stretch * rounding + mesh.largest * (U / 4.0));
         Self { instance: *instance, first, way, error }
     }
@@ -229,9 +229,11 @@ fn joined(halves: [f64x4; 2]) -> f32x8 {
 }
 
 impl Entrance {
-    /// How far behind a hit boxes still count, if in the world it is `slack`.
-    pub(super) fn slack(&self, slack: f32) -> f32 {
-        2.0 * slack + self.diagonal
+    /// How far behind a hit of a ray of the world boxes still count, if in the world it is `slack`. A shallow hit is only known to
+    /// lie in the padded box of its triangle, and far from the origin of the world the padding is that of its coordinates.
+    pub(super) fn slack(&self, beam: &Beam<f32>, slack: f32) -> f32 {
+        let coordinate = beam.origin().x.abs().max(beam.origin().y.abs()).max(beam.origin().z.abs());
+        2.0 * slack + self.diagonal + 32.0 * U as f32 * coordinate
     }
 }
 

@@ -229,12 +229,12 @@ impl Tree {
         let laid_out: Vec<_> = laid_out.map(|instance| geometry.order().places(instance)).collect();
         let mut roots = growth.parts(&laid_out, |place| geometry.world_triangle(place).corners);
         let mut below = std::mem::replace(&mut growth.tree.depth, 0);
-        for (number, mesh) in geometry.meshes().iter().enumerate() {
-            let of_it = |instance: usize| geometry.instances()[instance].mesh as usize == number;
-            let places: Vec<usize> = (0..ways.len()).filter(|&i| of_it(i) && ways[i].is_some()).collect();
-            if places.is_empty() {
-                continue;
-            }
+        let mut sharing: Vec<Vec<usize>> = vec![Vec::new(); geometry.meshes().len()];
+        for (number, instance) in geometry.instances().iter().enumerate().filter(|&(number, _)| ways[number].is_some())
+        {
+            sharing[instance.mesh as usize].push(number);
+        }
+        for (mesh, places) in geometry.meshes().iter().zip(sharing).filter(|(_, places)| !places.is_empty()) {
             let all = 0..mesh.triangles.len() as u32;
             let parts = growth.parts(&[all], |prim| local_triangle(mesh, prim));
             let root = growth.join(&parts);
