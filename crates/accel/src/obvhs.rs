@@ -203,7 +203,7 @@ impl Quest for Nearest<'_> {
     }
 
     #[inline(always)]
-    fn meet(&mut self, walk: &mut Walk, crossing: &Crossing, block: Cell<'_>) -> bool {
+    fn meet(&mut self, walk: &mut Walk<'_>, crossing: &Crossing, block: Cell<'_>) -> bool {
         for_each_lane(crossing.mask, |lane| {
             let (t, index) = (crossing.t.lane(lane), block.index(lane));
             if t < walk.t_best() || (t == walk.t_best() && index < walk.index) {
@@ -214,7 +214,7 @@ impl Quest for Nearest<'_> {
     }
 
     #[inline(always)]
-    fn done(&mut self, walk: &Walk) {
+    fn done(&mut self, walk: &Walk<'_>) {
         if walk.index == NO_HIT {
             return;
         }
@@ -243,7 +243,7 @@ impl Quest for Any<'_> {
     }
 
     #[inline(always)]
-    fn meet(&mut self, walk: &mut Walk, crossing: &Crossing, block: Cell<'_>) -> bool {
+    fn meet(&mut self, walk: &mut Walk<'_>, crossing: &Crossing, block: Cell<'_>) -> bool {
         let blocks = |lane: usize| match self.filter {
             None => true,
             Some(f) => f.blocks(walk.ray, &scalar_hit(crossing, lane, self.tree.order.id(block.index(lane)))),
@@ -263,7 +263,7 @@ impl Quest for Any<'_> {
         false
     }
 
-    fn done(&mut self, _: &Walk) {}
+    fn done(&mut self, _: &Walk<'_>) {}
 }
 
 impl Tree {

@@ -70,9 +70,9 @@ struct Seen {
 impl Tree {
     /// Looks at every cell, and at every triangle of every instance: O(n).
     pub(super) fn check(&self) -> Result<(), TreeError> {
-        let mut seen = Seen { cells: vec![0; self.cell_count()], entrances: vec![0; self.entrances.len()], waits: 1 };
+        let mut seen = Seen { cells: vec![0; self.cell_count()], entrances: vec![0; self.entrances.len()], waits: 2 };
         let mut triangles = vec![0_usize; self.order.count()];
-        self.check_below(self.root, 1, &mut seen, &mut |block| {
+        self.check_below(self.root, 2, &mut seen, &mut |block| {
             block.lanes_used().for_each(|lane| triangles[block.index(lane) as usize] += 1);
         })?;
         let waits = seen.waits + 1; // the exit
@@ -114,7 +114,7 @@ impl Tree {
         while let Some((child, waits, parent)) = work.pop() {
             let place = child.place();
             let beyond = |(cell, slot, _): (usize, usize, Box3)| TreeError::Box { cell, slot };
-            let times = match child.is_entrance() {
+            let times = match child.is_special() {
                 true => seen.entrances.get_mut(child.number()),
                 false => seen.cells.get_mut(place),
             };
@@ -125,7 +125,7 @@ impl Tree {
             if *times > 1 {
                 return Err(TreeError::NotOnce { cell: place, times: *times });
             }
-            let bounds = if child.is_entrance() {
+            let bounds = if child.is_special() {
                 seen.waits = seen.waits.max(waits);
                 self.entrances[child.number()].bounds
             } else if child.is_leaf() {

@@ -31,13 +31,13 @@ pub(super) trait Quest {
     /// Looks at eight rays before they go; returns those that need to.
     fn begin<const FAST: bool>(&mut self, packet: usize, ray: &Ray8, beam: &Beam, live: Mask8) -> Mask8;
     /// Looks at those triangles of a block that the ray meets; true if the ray need not go on.
-    fn meet(&mut self, walk: &mut Walk, crossing: &Crossing, block: Cell<'_>) -> bool;
+    fn meet(&mut self, walk: &mut Walk<'_>, crossing: &Crossing, block: Cell<'_>) -> bool;
     /// A ray is done: `meet` returned true, or there was no more to visit.
-    fn done(&mut self, walk: &Walk);
+    fn done(&mut self, walk: &Walk<'_>);
 }
 
 /// A ray on its way through the tree.
-pub(super) struct Walk {
+pub(super) struct Walk<'a> {
     /// Its number: packet · 8 + lane.
     pub(super) ray: usize,
     beam: Beam<f32>,
@@ -53,14 +53,16 @@ pub(super) struct Walk {
     /// Edge functions and place of the best hit.
     pub(super) edges: [f32; 3],
     pub(super) index: u32,
-    /// Its part of the stacks starts here,
+    /// Its part of the stacks starts here, with [`Child::DONE`],
     base: usize,
     /// and ends here.
     top: usize,
     next: Child,
+    /// The cell of what is next, unless that has none.
+    cell: Cell<'a>,
 }
 
-impl Walk {
+impl Walk<'_> {
     /// Takes a hit that is better than the best so far.
     #[inline(always)]
     pub(super) fn shorten(&mut self, t: f32, index: u32, edges: [f32; 3]) {
@@ -108,7 +110,7 @@ struct Queue<'a> {
     down: [u32; 3],
 }
 
-impl View<'_> {
+impl<'a> View<'a> {
     /// Sends all live rays through the tree, which may have entrances if `PLACED`.
     pub(super) fn fly<const FAST: bool, const PLACED: bool, Q: Quest>(&self, rays: &[Ray8], quest: &mut Q) {
         let size = self.tree.stack_size();
@@ -116,25 +118,29 @@ impl View<'_> {
         let Some(first) = rays.first() else { return };
         let beam = Beam::new(first.origin, first.dir, self.tree.lo, self.tree.hi);
         let mut queue = Queue { rays, begun: 0, left: 0, beam, down: [0; 3] };
-        let mut walks: [Walk; FLIGHT] = std::array::from_fn(|i| Walk::nowhere(beam.lane(0), i * size));
+        let cell = self.cell(Child::DONE);
+        let mut walks: [Walk<'_>; FLIGHT] = std::array::from_fn(|i| {
+            (stacks.children[i * size], stacks.nears[i * size]) = (Child::DONE.0, f32::NEG_INFINITY);
+            Walk::nowhere(beam.lane(0), i * size, cell)
+        });
         let mut others = if PLACED { vec![Elsewhere::of(&walks[0]); FLIGHT] } else { Vec::new() };
         let mut next = Next::default();
         for (i, walk) in walks.iter_mut().enumerate() {
             if self.take::<FAST, Q>(&mut queue, walk, quest) {
-                next.goes_to::<PLACED>(1 << i, walk.next);
+                self.turn::<PLACED>(1 << i, walk, &mut next);
             }
         }
         while next.any() {
             let now = std::mem::take(&mut next);
             for_each_bit(now.node, |i, bit| {
                 let walk = &mut walks[i];
-                walk.visit::<Q>(self.cell(walk.next), &mut stacks);
+                walk.visit::<Q>(&mut stacks);
                 self.pop::<PLACED, Q>(bit, walk, &stacks, &mut next);
             });
             for_each_bit(now.block, |i, bit| {
                 let walk = &mut walks[i];
-                let block = self.cell(walk.next);
-                let mut look = |walk: &mut Walk, crossing: &Crossing, block: Cell<'_>| {
+                let block = walk.cell;
+                let mut look = |walk: &mut Walk<'_>, crossing: &Crossing, block: Cell<'_>| {
                     crossing.mask.to_bits() != 0 && quest.meet(walk, crossing, block)
                 };
                 let is_done = match others.get(i) {
@@ -162,15 +168,16 @@ impl View<'_> {
             });
             for_each_bit(now.nothing, |i, bit| self.pop::<PLACED, Q>(bit, &mut walks[i], &stacks, &mut next));
             if PLACED {
-                for_each_bit(now.entrance, |i, bit| {
+                for_each_bit(now.special, |i, bit| {
                     let (walk, other) = (&mut walks[i], &mut others[i]);
                     if walk.next == Child::EXIT {
                         walk.leave(other);
                         self.pop::<PLACED, Q>(bit, walk, &stacks, &mut next);
+                    } else if walk.next == Child::DONE {
+                        next.done |= bit;
                     } else {
                         walk.enter(other, self.tree, &mut stacks);
-                        self.prefetch(walk.next);
-                        next.goes_to::<PLACED>(bit, walk.next);
+                        self.turn::<PLACED>(bit, walk, &mut next);
                     }
                 });
             }
@@ -181,7 +188,7 @@ impl View<'_> {
                     (others[i].is_inside, others[i].placed) = (false, None);
                 }
                 if self.take::<FAST, Q>(&mut queue, walk, quest) {
-                    next.goes_to::<PLACED>(bit, walk.next);
+                    self.turn::<PLACED>(bit, walk, &mut next);
                 }
             });
         }
@@ -189,7 +196,7 @@ impl View<'_> {
 
     /// Starts the next ray of the queue; false if there is none.
     #[inline(always)]
-    fn take<const FAST: bool, Q: Quest>(&self, queue: &mut Queue<'_>, walk: &mut Walk, quest: &mut Q) -> bool {
+    fn take<const FAST: bool, Q: Quest>(&self, queue: &mut Queue<'_>, walk: &mut Walk<'_>, quest: &mut Q) -> bool {
         if queue.left == 0 && !self.begin::<FAST, Q>(queue, quest) {
             return false;
         }
@@ -201,7 +208,7 @@ impl View<'_> {
         walk.beam = queue.beam.lane(lane);
         (walk.t_min, walk.t_best) = (queue.rays[packet].t_min.lane(lane), queue.rays[packet].t_max.lane(lane));
         walk.see_as_far_as(queue.beam.slack::<FAST>().lane(lane));
-        (walk.index, walk.top, walk.next) = (NO_HIT, walk.base, self.tree.root);
+        (walk.index, walk.top, walk.next) = (NO_HIT, walk.base + 1, self.tree.root);
         true
     }
 
@@ -225,20 +232,24 @@ impl View<'_> {
 
     /// Takes the next subtree from a ray's stack and has it fetched.
     #[inline(always)]
-    fn pop<const PLACED: bool, Q: Quest>(&self, bit: u32, walk: &mut Walk, stacks: &Stack, next: &mut Next) {
-        let is_empty = walk.top == walk.base;
-        let top = walk.top - usize::from(!is_empty);
-        let child = Child(stacks.children[top]);
+    fn pop<const PLACED: bool, Q: Quest>(&self, bit: u32, walk: &mut Walk<'a>, stacks: &Stack, next: &mut Next) {
+        walk.top -= 1;
+        walk.next = Child(stacks.children[walk.top]);
         // Not <: a tie may lie behind this box and have the smaller index.
-        let counts = Q::ANY || stacks.nears[top] <= walk.until;
-        (walk.top, walk.next) = (top, child);
-        if !(PLACED && child.is_entrance()) {
-            self.prefetch(child);
+        let counts = Q::ANY || stacks.nears[walk.top] <= walk.until;
+        let visit = if counts { bit } else { 0 };
+        next.nothing |= bit & !visit;
+        self.turn::<PLACED>(visit, walk, next);
+    }
+
+    /// Has what is next fetched, and visited in the next round unless `bit` is 0.
+    #[inline(always)]
+    fn turn<const PLACED: bool>(&self, bit: u32, walk: &mut Walk<'a>, next: &mut Next) {
+        if !(PLACED && walk.next.is_special()) {
+            walk.cell = self.cell(walk.next);
+            walk.cell.prefetch();
         }
-        let [waits, counts] = [!is_empty, counts].map(|is| if is { bit } else { 0 });
-        next.done |= bit & !waits;
-        next.nothing |= waits & !counts;
-        next.goes_to::<PLACED>(waits & counts, child);
+        next.goes_to::<PLACED>(bit, walk.next);
     }
 }
 
@@ -247,27 +258,30 @@ impl View<'_> {
 struct Next {
     node: u32,
     block: u32,
-    /// An entrance, or the exit.
-    entrance: u32,
+    /// An entrance, or the exit, or the end, of a tree with entrances.
+    special: u32,
     /// What it took from its stack lies behind its hit.
     nothing: u32,
-    /// Its stack is empty.
+    /// It need not go on, or has nowhere to go.
     done: u32,
 }
 
 impl Next {
     #[inline(always)]
     fn goes_to<const PLACED: bool>(&mut self, bit: u32, child: Child) {
-        let leaf = child.all_ones_if_leaf();
-        let entrance = if PLACED && child.is_entrance() { bit } else { 0 };
+        let (leaf, special) = (child.all_ones_if_leaf(), child.all_ones_if_special());
         self.node |= bit & !leaf;
-        self.block |= bit & leaf & !entrance;
-        self.entrance |= entrance;
+        self.block |= bit & leaf & !special;
+        if PLACED {
+            self.special |= bit & special;
+        } else {
+            self.done |= bit & special;
+        }
     }
 
     #[inline(always)]
     fn any(&self) -> bool {
-        self.node | self.block | self.entrance | self.nothing != 0
+        self.node | self.block | self.special | self.nothing != 0
     }
 }
 
@@ -286,13 +300,13 @@ pub(super) fn sound(ray: &Ray8) -> Mask8 {
 }
 
 impl Elsewhere {
-    fn of(walk: &Walk) -> Self {
+    fn of(walk: &Walk<'_>) -> Self {
         let stance = walk.stance();
         Self { is_inside: false, placed: None, world: stance, mesh: stance, slack: walk.slack }
     }
 }
 
-impl Walk {
+impl<'a> Walk<'a> {
     fn stance(&self) -> Stance {
         Stance { beam: self.beam, facing: self.facing }
     }
@@ -328,7 +342,7 @@ impl Walk {
         (self.from, self.until) = (self.t_min - slack, self.t_best + slack);
     }
 
-    fn nowhere(beam: Beam<f32>, base: usize) -> Self {
+    fn nowhere(beam: Beam<f32>, base: usize, cell: Cell<'a>) -> Self {
         Self {
             ray: 0,
             beam,
@@ -342,13 +356,15 @@ impl Walk {
             index: NO_HIT,
             base,
             top: base,
-            next: Child::default(),
+            next: Child::DONE,
+            cell,
         }
     }
 
     /// Pushes the children of a node whose boxes the ray enters.
     #[inline(always)]
-    fn visit<Q: Quest>(&mut self, node: Cell<'_>, stacks: &mut Stack) {
+    fn visit<Q: Quest>(&mut self, stacks: &mut Stack) {
+        let node = self.cell;
         let [near, far] = self.facing.planes(node);
         let [enter, leave] = self.beam.splat().slab(near, far);
         let entered = enter.max(F32x8::splat(self.from)).le(leave.min(F32x8::splat(self.until)));

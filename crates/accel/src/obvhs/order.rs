@@ -35,7 +35,7 @@ pub(super) fn settle(tree: &mut Tree, nodes: &[Child], odds: &mut Vec<Odds>) {
 
 /// The odds of a child in its box; a node has its own already.
 pub(super) fn below(tree: &Tree, odds: &[Odds], child: Child, bounds: Box3) -> Odds {
-    if child.is_entrance() {
+    if child.is_special() {
         tree.entrances[child.number()].odds
     } else if child.is_leaf() {
         of_block(tree.cell(child), bounds)

@@ -314,7 +314,7 @@ impl View<'_> {
         stack.store(top, keys, Some(enter.to_bits().permute(slots.which).as_real()));
         let end = top + slots.count;
         for key in &stack.children[top..end] {
-            self.prefetch(Child(cell.children().lane(*key as usize)));
+            self.cell(Child(cell.children().lane(*key as usize))).prefetch();
         }
         end
     }

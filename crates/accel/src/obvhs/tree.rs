@@ -30,28 +30,37 @@ pub(super) struct Child(pub(super) u32);
 
 const LEAF: u32 = 1 << 31;
 
-/// A leaf that is an entrance to the tree of a mesh, see [`super::placed`]. A tree has fewer than 2³⁰ cells.
-const ENTRANCE: u32 = LEAF | 1 << 30;
+/// What is special has no cell: the end of a walk, the exit of a mesh's tree, and entrances to it ([`super::placed`]), numbered from
+/// 1 on. A tree has fewer than 2³⁰ cells, so their bits are not those of a place.
+const SPECIAL: u32 = LEAF | 1 << 30;
 
 impl Child {
+    /// There is no more to visit.
+    pub(super) const DONE: Self = Self(SPECIAL);
+
     /// The way out of a mesh's tree.
     pub(super) const EXIT: Self = Self(u32::MAX);
 
-    /// The entrance of that number.
+    /// The entrance of that number, counted from 0.
     fn entrance(number: usize) -> Self {
-        Self(ENTRANCE | number as u32)
+        Self(SPECIAL | (number + 1) as u32)
     }
 
-    /// Whether it is an entrance, or the exit.
     #[inline(always)]
-    pub(super) fn is_entrance(self) -> bool {
-        self.0 >= ENTRANCE
+    pub(super) fn is_special(self) -> bool {
+        self.0 >= SPECIAL
     }
 
-    /// The number of an entrance.
+    /// The number of an entrance, counted from 0.
     #[inline(always)]
     pub(super) fn number(self) -> usize {
-        (self.0 & !ENTRANCE) as usize
+        ((self.0 & !SPECIAL) as usize).wrapping_sub(1)
+    }
+
+    /// A mask instead of a branch.
+    #[inline(always)]
+    pub(super) fn all_ones_if_special(self) -> u32 {
+        ((self.0 << 1) as i32 >> 31) as u32
     }
 
     #[inline(always)]
@@ -59,10 +68,10 @@ impl Child {
         self.0 & LEAF != 0
     }
 
-    /// Where its cell is.
+    /// Where its cell is; 0 for [`Child::DONE`], so that to look there is no mistake.
     #[inline(always)]
     pub(super) fn place(self) -> usize {
-        (self.0 & !LEAF) as usize
+        (self.0 & !SPECIAL) as usize
     }
 
     /// A mask instead of a branch.
@@ -87,6 +96,14 @@ impl<'a> Cell<'a> {
     #[inline(always)]
     pub(super) fn of(rows: &'a Rows) -> Self {
         Self(rows)
+    }
+
+    /// Has the memory fetch it.
+    #[inline(always)]
+    pub(super) fn prefetch(self) {
+        for line in 0..5 {
+            fetch(&self.0[2 * line]);
+        }
     }
 
     /// A plane of the boxes; rows beyond the planes for numbers from 6 on, which are taken modulo 8.
@@ -263,9 +280,9 @@ impl Tree {
         tree
     }
 
-    /// How many entries a traversal can have waiting at once, an exit among them, and room for eight more.
+    /// How many entries a traversal can have waiting at once, the end and an exit among them, and room for eight more.
     pub(super) fn stack_size(&self) -> usize {
-        (WIDTH - 1) * self.depth + 2 + WIDTH
+        (WIDTH - 1) * self.depth + 3 + WIDTH
     }
 
     pub(super) fn cell(&self, child: Child) -> Cell<'_> {
@@ -294,7 +311,7 @@ impl Tree {
             if child.is_leaf() {
                 blocks.push(self.cell(child));
             } else {
-                work.extend(self.cell(child).slots().map(|slot| slot.1).filter(|child| !child.is_entrance()));
+                work.extend(self.cell(child).slots().map(|slot| slot.1).filter(|child| !child.is_special()));
             }
         }
         blocks
@@ -419,15 +436,6 @@ impl<'a> View<'a> {
     #[inline(always)]
     pub(super) fn cell(self, child: Child) -> Cell<'a> {
         Cell(&self.rows[child.place()])
-    }
-
-    /// Has the memory fetch a cell.
-    #[inline(always)]
-    pub(super) fn prefetch(self, child: Child) {
-        let rows = &self.rows[child.place()];
-        for line in 0..5 {
-            fetch(&rows[2 * line]);
-        }
     }
 }
 
