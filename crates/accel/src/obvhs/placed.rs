@@ -242,7 +242,7 @@ impl Entrance {
 pub(super) fn candidates(block: Cell<'_>, beam: &Beam<f32>, facing: &Facing, from: f32, until: f32) -> u32 {
     let [a, b, c] = block.corners().map(<[F32x8; 3]>::from);
     let ends = [0, 1, 2].map(|axis| [a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis])]);
-    let [near, far] = facing.planes_of(|row| ends[row / 2 % 3][row % 2]);
+    let [near, far] = facing.planes_of(|start| ends[start / 16 % 3][start / 8 % 2]);
     let [enter, leave] = beam.splat().slab(near, far);
     enter.max(F32x8::splat(from)).le(leave.min(F32x8::splat(until))).to_bits()
 }

@@ -106,10 +106,13 @@ impl<'a> Cell<'a> {
         }
     }
 
-    /// A plane of the boxes; rows beyond the planes for numbers from 6 on, which are taken modulo 8.
+    /// A row of planes of the boxes, by where it starts among the words of the cell.
     #[inline(always)]
-    pub(super) fn plane(self, row: usize) -> F32x8 {
-        F32x8(self.0[row & 7])
+    pub(super) fn plane(self, start: usize) -> F32x8 {
+        let [rows @ .., _, _] = self.0;
+        let words: &[f32; 64] = bytemuck::cast_ref(rows);
+        // All bits of 56 are a row's: the compiler sees that it lies within.
+        words[start & 56..].first_chunk().map_or(F32x8::ZERO, |row| F32x8::new(*row))
     }
 
     #[inline(always)]
@@ -173,7 +176,7 @@ impl Slots {
     }
 }
 
-/// Which sides of boxes rays meet first: which of a node's rows are near planes, which far ones.
+/// Which sides of boxes rays meet first: where among a node's words the rows of near planes start, and those of far ones.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Facing {
     near: [usize; 3],
@@ -185,7 +188,8 @@ impl Facing {
     /// Of rays that point down those axes that have a 1, and up those that have a 0.
     #[inline(always)]
     pub(super) fn of([x, y, z]: [usize; 3]) -> Self {
-        Self { near: [x, 2 + y, 4 + z], far: [x ^ 1, 2 + (y ^ 1), 4 + (z ^ 1)], octant: x | y << 1 | z << 2 }
+        let rows = |x: usize, y: usize, z: usize| [x, 2 + y, 4 + z].map(|row| WIDTH * row);
+        Self { near: rows(x, y, z), far: rows(x ^ 1, y ^ 1, z ^ 1), octant: x | y << 1 | z << 2 }
     }
 
     /// The near and the far planes of a node's children.
@@ -194,7 +198,7 @@ impl Facing {
         self.planes_of(|row| node.plane(row))
     }
 
-    /// The near and the far planes of boxes whose rows are as those of a node.
+    /// The near and the far planes of boxes whose rows start where those of a node do.
     #[inline(always)]
     pub(super) fn planes_of(&self, plane: impl Fn(usize) -> F32x8) -> [Vec3<F32x8>; 2] {
         [self.near, self.far].map(|[x, y, z]| Vec3::new(plane(x), plane(y), plane(z)))
