@@ -230,6 +230,12 @@ pub struct Crossing {
 }
 
 impl Crossing {
+    /// Whether some lane meets.
+    #[inline(always)]
+    pub fn any(&self) -> bool {
+        self.mask.to_bits() != 0
+    }
+
     /// The edge functions, each opposite its corner, up to a common factor.
     #[inline(always)]
     pub fn edges(&self) -> &[F32x8; 3] {

@@ -140,24 +140,18 @@ impl<'a> View<'a> {
             for_each_bit(now.block, |i, bit| {
                 let walk = &mut walks[i];
                 let block = walk.cell;
-                let mut look = |walk: &mut Walk<'_>, crossing: &Crossing, block: Cell<'_>| {
-                    crossing.mask.to_bits() != 0 && quest.meet(walk, crossing, block)
-                };
                 let is_done = match others.get(i) {
                     Some(Elsewhere { is_inside: true, placed: Some(number), world, .. }) if PLACED => {
-                        candidates(block, &walk.beam, &walk.facing, walk.from, walk.until) != 0 && {
+                        walk.may_meet(block) && {
                             let rows = self.tree.placed[*number as usize].in_world(block);
                             let block = Cell::of(&rows);
-                            look(
-                                walk,
-                                &test::<FAST>(&world.beam.splat(), &block.corners(), walk.t_min, walk.t_best),
-                                block,
-                            )
+                            let crossing = walk.test::<FAST>(&world.beam, block);
+                            crossing.any() && quest.meet(walk, &crossing, block)
                         }
                     }
                     _ => {
-                        let beam = walk.beam.splat();
-                        look(walk, &test::<FAST>(&beam, &block.corners(), walk.t_min, walk.t_best), block)
+                        let crossing = walk.test::<FAST>(&walk.beam, block);
+                        crossing.any() && quest.meet(walk, &crossing, block)
                     }
                 };
                 if is_done {
@@ -337,6 +331,19 @@ impl<'a> Walk<'a> {
         other.is_inside = false;
     }
 
+    /// Whether the ray enters the box of some triangle of a block, in the coordinates of where it is.
+    #[inline(always)]
+    fn may_meet(&self, block: Cell<'_>) -> bool {
+        candidates(block, &self.beam, &self.facing, self.from, self.until) != 0
+    }
+
+    /// Tests the ray, as it is in the world, against the triangles of a block of the world.
+    #[inline(always)]
+    fn test<const FAST: bool>(&self, beam: &Beam<f32>, block: Cell<'_>) -> Crossing {
+        let (t_min, t_max) = (F32x8::splat(self.t_min), F32x8::splat(self.t_best));
+        crossing::<FAST>(&beam.splat(), &block.corners(), t_min, t_max)
+    }
+
     fn see_as_far_as(&mut self, slack: f32) {
         self.slack = slack;
         (self.from, self.until) = (self.t_min - slack, self.t_best + slack);
@@ -388,10 +395,4 @@ pub(super) fn crossing<const FAST: bool>(
     t_max: F32x8,
 ) -> Crossing {
     if FAST { intersect_fast(beam, corners, t_min, t_max) } else { intersect(beam, corners, t_min, t_max) }
-}
-
-/// The same for one ray.
-#[inline(always)]
-pub(super) fn test<const FAST: bool>(beam: &Beam, corners: &[Vec3<F32x8>; 3], t_min: f32, t_max: f32) -> Crossing {
-    crossing::<FAST>(beam, corners, F32x8::splat(t_min), F32x8::splat(t_max))
 }
