@@ -1,6 +1,7 @@
 //! A tree that instances share gives the hits of triangles that are laid out in the world, to the last bit.
 
-use super::{Witness, bits, blocked, hits, hits_by, ordinary_rays, telling_rays, tiles_of_rays};
+use super::filters::Witness;
+use super::{bits, blocked, hits, hits_by, ordinary_rays, telling_rays, tiles_of_rays};
 use crate::support::{Random, grid, hills, soup, sphere};
 use gonio_accel::{Brute, Geometry, Instance, Intersect, Mesh, Obvhs, ObvhsOptions, RayKind, Sharing};
 use gonio_kernel::F32x8;

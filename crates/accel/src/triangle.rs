@@ -26,7 +26,7 @@ use std::fmt;
 ///
 /// Measured with 400,000 rays from above at inner points of inner edges of a height field, each of which must hit: lost are
 /// 0 robust, by obvhs and by Embree; fast, 8.9 % by obvhs and 6.1 % by Embree. Of 200,000 rays from within a closed sphere at its
-/// vertices, obvhs loses none and Embree's robust test 121. (`tests/backends.rs` repeats both.)
+/// vertices, obvhs loses none and Embree's robust test 121. (`tests/backends/edges.rs` repeats both.)
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Intersect {
     /// Watertight: no ray falls between triangles that share an edge, wherever it is aimed.
