@@ -362,6 +362,14 @@ impl Real for F32x8 {
         x.same(y)
     }
     #[inline(always)]
+    fn int_add(x: U32x8, y: U32x8) -> U32x8 {
+        x + y
+    }
+    #[inline(always)]
+    fn int_lt(x: U32x8, y: U32x8) -> Mask8 {
+        x.lt(y)
+    }
+    #[inline(always)]
     fn int_select(mask: Mask8, yes: U32x8, no: U32x8) -> U32x8 {
         U32x8::select(mask, yes, no)
     }
@@ -416,7 +424,9 @@ mod tests {
         let (x, y) = (a.round_to_int().1, b.round_to_int().1);
         let (lt, le) = (a.lt(b), b.le(c));
         let compared = [lt, le, a.gt(b), a.ge(b), a.same(b), a.is_finite(), !lt, lt & le, lt | le, lt ^ le];
-        let whole = [R::int_bit(x, 0), R::int_bit(x, 1), R::int_bit(x, 21), R::int_same(x, y)];
+        let sum = R::int_add(x, y);
+        let bits = [R::int_bit(x, 0), R::int_bit(x, 1), R::int_bit(x, 21), R::int_bit(sum, 1), R::int_bit(sum, 22)];
+        let whole = bits.into_iter().chain([R::int_same(x, y), R::int_lt(x, y)]);
         let chosen = [R::int_same(R::int_select(lt, x, R::int(3)), y), R::Mask::splat(true), R::Mask::splat(false)];
         compared.into_iter().chain(whole).chain(chosen).collect()
     }

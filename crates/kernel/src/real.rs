@@ -91,6 +91,10 @@ pub trait Real:
     fn int_bit(x: Self::Int, bit: u32) -> Self::Mask;
     /// x = y
     fn int_same(x: Self::Int, y: Self::Int) -> Self::Mask;
+    /// x + y, wrapping.
+    fn int_add(x: Self::Int, y: Self::Int) -> Self::Int;
+    /// x < y, for both below 2³¹: lanes compare signed.
+    fn int_lt(x: Self::Int, y: Self::Int) -> Self::Mask;
     /// `yes` where `mask`, `no` elsewhere.
     fn int_select(mask: Self::Mask, yes: Self::Int, no: Self::Int) -> Self::Int;
 
@@ -235,6 +239,14 @@ macro_rules! scalar_real {
             #[inline(always)]
             fn int_same(x: u32, y: u32) -> bool {
                 x == y
+            }
+            #[inline(always)]
+            fn int_add(x: u32, y: u32) -> u32 {
+                x.wrapping_add(y)
+            }
+            #[inline(always)]
+            fn int_lt(x: u32, y: u32) -> bool {
+                x < y
             }
             #[inline(always)]
             fn int_select(mask: bool, yes: u32, no: u32) -> u32 {
