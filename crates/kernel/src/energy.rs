@@ -30,23 +30,26 @@
 //!
 //! **Anisotropy.** For $\alpha_x \ne \alpha_y$ there is no more than an effective width, [`effective_alpha`], and what it leaves.
 
+mod albedo;
 mod tables;
 
+pub use albedo::AlbedoCurve;
 pub use tables::TABLE;
 
 use crate::math::{exp, exp_m1, ln_1p, sin_cos_turns};
 use crate::real::Real;
 use crate::vec3::Vec3;
 
-/// What becomes of light that meets more than one facet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Compensation {
-    /// It is lost.
-    None,
-    /// It comes back as a wide lobe of its own: [`kulla_conty`]. Reciprocal.
-    KullaConty,
-    /// It makes the lobe brighter: [`turquin`]. Not reciprocal.
-    Turquin,
+crate::choice! {
+    /// What becomes of light that meets more than one facet.
+    pub enum Compensation {
+        /// It is lost.
+        None = "none",
+        /// It comes back as a wide lobe of its own: [`kulla_conty`]. Reciprocal.
+        KullaConty = "kulla-conty",
+        /// It makes the lobe brighter: [`turquin`]. Not reciprocal.
+        Turquin = "turquin",
+    }
 }
 
 /// How many Chebyshev polynomials of v.

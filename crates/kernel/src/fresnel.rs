@@ -2,7 +2,9 @@
 //!
 //! Cosines are those between the direction and the (micro)normal, on wo's side. Results lie in [0, 1].
 
-use crate::energy::facet_cosines;
+use crate::energy::{AlbedoCurve, facet_cosines};
+use crate::metal::Metal;
+use crate::model::{ETA, EXTINCTION, INDEX, REFLECTANCE};
 use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
 
@@ -157,33 +159,35 @@ fn f82_bend<R: Real>(f0: R, tint: R) -> R {
     (R::ONE - f0).mul_add(R::lit(M5), f0) * (R::ONE - tint) * R::lit(49.0 / (6.0 * M5))
 }
 
-/// What a reflecting interface is made of, per channel.
-#[derive(Clone, Copy, Debug)]
-pub enum Fresnel<R> {
-    /// A conductor: index η in [1e-4, 100], extinction k in [0, 100].
-    Conductor {
-        /// Index of refraction.
-        eta: Rgb<R>,
-        /// Extinction coefficient.
-        k: Rgb<R>,
-    },
-    /// Schlick's curve through f0 in [0, 1].
-    Schlick {
-        /// Reflectance at normal incidence.
-        f0: Rgb<R>,
-    },
-    /// Schlick's curve with a dip at 82°, as metals have: f0 and tint in [0, 1]; see [`f82`].
-    F82 {
-        /// Reflectance at normal incidence.
-        f0: Rgb<R>,
-        /// What is left of Schlick's value at 82°.
-        tint: Rgb<R>,
-    },
-    /// The reflection of a dielectric, whose transmitted light is not of interest: eta = η_t/η_i in [0.01, 100].
-    Dielectric {
-        /// Index behind the interface over that before it.
-        eta: R,
-    },
+crate::one_of! {
+    /// What the reflecting interface is made of.
+    pub enum Fresnel<R> {
+        /// A conductor.
+        Conductor {
+            /// Index of refraction.
+            eta: Rgb<R> in ETA,
+            /// Extinction coefficient.
+            k: Rgb<R> in EXTINCTION,
+        },
+        /// Schlick's curve.
+        Schlick {
+            /// Reflectance at normal incidence.
+            f0: Rgb<R> in REFLECTANCE,
+        },
+        /// Schlick's curve with a dip at 82°, as metals have; see [`f82`].
+        F82 {
+            /// Reflectance at normal incidence.
+            f0: Rgb<R> in REFLECTANCE,
+            /// What is left of Schlick's value at 82°.
+            tint("f82"): Rgb<R> in REFLECTANCE,
+        },
+        /// The reflection of a dielectric, whose transmitted light is not of interest.
+        Dielectric {
+            /// Index behind the interface over that before it.
+            eta("ior"): R in INDEX,
+        },
+    }
+    or (metal: Metal, " A metal whose index is known.") => metal.into();
 }
 
 impl<R: Real> Fresnel<R> {
@@ -206,29 +210,23 @@ impl<R: Real> Fresnel<R> {
         }
     }
 
+    /// The directional albedo of GGX facets of this material, or of a smooth interface for alpha = 0, as a curve that errs upwards; none
+    /// for a material that nothing shines through, or from its denser side.
+    #[inline(always)]
+    pub fn albedo_curve_at(&self, alpha: R) -> Option<AlbedoCurve<R>> {
+        match *self {
+            Self::Schlick { f0 } => Some(AlbedoCurve::schlick(alpha, f0)),
+            Self::Dielectric { eta } => Some(AlbedoCurve::dielectric(alpha, eta)),
+            Self::Conductor { .. } | Self::F82 { .. } => None,
+        }
+    }
+
     /// The mean reflectance of the facets that light meets which is scattered more than once: see [`facet_cosines`].
     #[inline(always)]
     pub fn of_facets(&self, alpha: R, cos_o: R, cos_i: R) -> Rgb<R> {
         let [steep, flat] = facet_cosines(alpha, cos_o, cos_i).map(|cos| self.reflectance(cos));
         (steep + flat) * R::lit(0.5)
     }
-
-    /// Whether every parameter lies in its domain.
-    #[inline(always)]
-    pub fn domain(&self) -> R::Mask {
-        match *self {
-            Self::Conductor { eta, k } => eta.within(0.999_999e-4, 100.0) & k.within(0.0, 100.0),
-            Self::Schlick { f0 } => f0.within(0.0, 1.0),
-            Self::F82 { f0, tint } => f0.within(0.0, 1.0) & tint.within(0.0, 1.0),
-            Self::Dielectric { eta } => index_in_domain(eta),
-        }
-    }
-}
-
-/// Whether a relative index lies in [0.01, 100].
-#[inline(always)]
-pub(crate) fn index_in_domain<R: Real>(eta: R) -> R::Mask {
-    eta.ge(R::lit(0.999_999e-2)) & eta.le(R::lit(100.0))
 }
 
 #[cfg(test)]

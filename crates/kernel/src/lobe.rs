@@ -1,57 +1,117 @@
-//! `Lobe`: the contract that every scattering model obeys. Its models are one file each.
+//! `Lobe`: the contract that every scattering model obeys. The kernel's models and combinations are one file each.
 //!
-//! A lobe has a continuous part, described by a density over directions, and may have a discrete part, a set of single
-//! directions with probabilities. [`Lobe::eval`] is the only author of value and density of the continuous part,
-//! [`Lobe::discrete`] the only author of weight and probability of the discrete part, and [`Lobe::sample`] only chooses.
-//! So value and density cannot drift apart, and a purely discrete lobe evaluates to 0, 0.
+//! A lobe has a continuous part, described by a density over directions, and may have a delta part, a set of single directions with
+//! probabilities. [`Lobe::eval`] is the only author of value and density of the continuous part, [`Lobe::delta`] the only author of
+//! weight and probability of the delta part, and [`Lobe::sample`] only chooses. So value and density cannot drift apart, and a lobe
+//! that is all delta evaluates to 0, 0.
 //!
-//! **Transport.** Values are those of radiance: light that crosses into a denser medium is compressed into a narrower cone,
-//! so transmitted values carry 1/η² ([`Lobe::compression`]). Furnaces and albedos are about importance, which does not.
-//! For radiance f(wo, wi) η_i² = f(wi, wo) η_o², with η_o the index on wo's side (Veach 1997, section 5.2).
+//! **Everything that scatters is a lobe**: a model ([`Lambert`]), a weighted lobe ([`Weighted`]), two side by side ([`Mix`]), one over
+//! another ([`Layer`]), a list ([`crate::Surface`]), an enum of lobes ([`AnyLobe`], or a user's own by
+//! [`any_lobe!`](crate::any_lobe)), and a borrowed lobe. A user's lobe is mixed, layered, guarded, certified and rendered like ours.
+//!
+//! **Transport.** Values are those of radiance unless asked otherwise: light that crosses into a denser medium is compressed into a
+//! narrower cone, so transmitted values carry 1/η² ([`Lobe::radiance_scale`]). Furnaces and albedos are about importance, which
+//! does not. For radiance f(wo, wi) η_o² = f(wi, wo) η_i² holds after multiplication by that scale (Veach 1997, section 5.2).
 //!
 //! Inside the domain (unit directions to 1e-3 in |w|², parameters in range) every result is finite and non-negative with
 //! no guard. Outside, a lobe may return anything but must not panic; [`crate::Closure`] turns that into exact zeros.
+//!
+//! A lobe of one's own, at its shortest:
+//!
+//! ```
+//! use gonio_kernel::lobe::{Sample, Event, Value};
+//! use gonio_kernel::warp::{pdf_cosine_hemisphere, sample_cosine_hemisphere};
+//! use gonio_kernel::{Closure, Lobe, Mask, Real, Rgb, Transport, Vec3, frame::both_above};
+//!
+//! /// Reflects more of the light the steeper it leaves.
+//! struct Dusty;
+//! impl<R: Real> Lobe<R> for Dusty {
+//!     type Prepared = ();
+//!     fn prepare(&self, _wo: Vec3<R>, _transport: Transport) {}
+//!     fn eval(&self, wo: Vec3<R>, _: &(), wi: Vec3<R>) -> Value<R> {
+//!         let pdf = pdf_cosine_hemisphere(wi);
+//!         Value { f_cos: Rgb::splat(pdf * wo.z * wi.z), pdf }.or_zero(both_above(wo, wi))
+//!     }
+//!     fn sample(&self, wo: Vec3<R>, _: &(), u: [R; 3]) -> Sample<R> {
+//!         let wi = sample_cosine_hemisphere([u[1], u[2]]);
+//!         Sample { wi, event: Event::reflected(!both_above(wo, wi)) }
+//!     }
+//!     fn delta(&self, _: Vec3<R>, _: &(), _: &Sample<R>) -> Value<R> {
+//!         Value::zero()
+//!     }
+//!     fn albedo_estimate(&self, wo: Vec3<R>) -> Rgb<R> {
+//!         Rgb::splat(wo.z * R::lit(2.0 / 3.0))
+//!     }
+//!     fn domain(&self) -> R::Mask {
+//!         R::Mask::splat(true)
+//!     }
+//! }
+//! let sample = Closure::new(Dusty, Vec3::new(0.6_f32, 0.0, 0.8)).sample([0.5; 3]);
+//! assert!(sample.weight.g <= 1.0);
+//! ```
 
+mod any;
 mod conductor;
 mod dielectric;
 pub mod eon;
 mod lambert;
+mod layer;
 mod mirror;
+mod mix;
 mod phong;
 mod rough_dielectric;
+mod smooth_conductor;
 mod two_sided;
+mod weighted;
 
+pub use any::AnyLobe;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
-pub use eon::Eon;
+pub use eon::{Eon, EonAlbedo};
 pub use lambert::Lambert;
+pub use layer::{Coat, Layer, Layering, NoCoat};
 pub use mirror::Mirror;
-pub use phong::{Phong, PhongNorm};
+pub use mix::Mix;
+pub use phong::{Phong, PhongNormalization};
 pub use rough_dielectric::RoughDielectric;
+pub use smooth_conductor::SmoothConductor;
 pub use two_sided::TwoSided;
+pub use weighted::Weighted;
+
+pub(crate) use mix::{rest_of, share};
 
 use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
 use crate::vec3::Vec3;
+use core::fmt::Debug;
 
-/// What a pair of directions, or a discrete event, is worth.
+/// What a path carries from wi to wo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Transport {
+    /// Radiance, as seen by a camera: scaled by 1/η² where it crosses into another medium.
+    Radiance,
+    /// Importance, or particles of light: energy as it is.
+    Importance,
+}
+
+/// Value and density of a pair of directions, or of a delta event.
 #[derive(Clone, Copy, Debug)]
 pub struct Value<R> {
-    /// f·|cos_i| \[1/sr\]; for a discrete event its weight times its probability.
+    /// f·|cos_i| \[1/sr\]; for a delta event its weight times its probability.
     pub f_cos: Rgb<R>,
-    /// Density per solid angle \[1/sr\]; for a discrete event its probability. 0 means it cannot happen.
+    /// Density per solid angle \[1/sr\]; for a delta event its probability. 0 means it cannot happen.
     pub pdf: R,
 }
 
 /// What a sample did.
 #[derive(Clone, Copy, Debug)]
 pub struct Event<R: Real> {
-    /// Which lobe of a closure made it; 0 for a lobe of its own.
+    /// Which lobe of a combination made it, below [`Lobe::LOBES`].
     pub lobe: R::Int,
     /// `wi` lies on the other side of the surface.
     pub transmitted: R::Mask,
-    /// `wi` came from a discrete part: its worth is [`Lobe::discrete`], not [`Lobe::eval`].
-    pub discrete: R::Mask,
+    /// `wi` came from a delta part: its value is [`Lobe::delta`], not [`Lobe::eval`].
+    pub is_delta: R::Mask,
     /// Nothing was sampled: `wi` is some finite unit direction, to be ignored.
     pub failed: R::Mask,
 }
@@ -65,15 +125,12 @@ pub struct Sample<R: Real> {
     pub event: Event<R>,
 }
 
-/// Up to five numbers of a lobe that depend on wo alone; what they mean is the lobe's own business.
-#[derive(Clone, Copy, Debug)]
-pub struct Prepared<R>(pub [R; 5]);
-
-/// Which laws of physics a model claims to obey. What it does not claim, it breaks on purpose: instruments measure that too,
-/// so a claim can be stale in either way.
+/// What a lobe claims of itself at its parameters. Instruments measure every claim, those of broken laws too, so a claim can be
+/// stale in either way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Properties {
-    /// Light takes the same way back, f(wo, wi) = f(wi, wo), through an interface up to η²; else it measurably does not.
+#[non_exhaustive]
+pub struct Properties<R> {
+    /// Helmholtz reciprocity, f(wo, wi) = f(wi, wo), through an interface up to η²; else it is measurably broken.
     pub reciprocal: bool,
     /// No directional albedo exceeds 1 + `excess`; else one measurably exceeds 1 (at parameters as bright as the domain allows).
     pub conserving: bool,
@@ -82,52 +139,76 @@ pub struct Properties {
     /// By how many units `f32` may differ from `f64` on the same numbers; a unit is the larger of eps·f and the largest change
     /// of f when one input moves by one unit in the last place. 8, unless a fitted function adds roundings of its own.
     pub units: f32,
+    /// All of it is delta events.
+    pub all_delta: bool,
+    /// Scatters to the other side, and from there.
+    pub transmits: bool,
+    /// The sampler maps the unit square to directions one to one: then pdf · |∂ω/∂u| = 1.
+    pub one_to_one: bool,
+    /// Exchanging the directions exchanges operands of commutative operations only, so that even rounding is reciprocal.
+    pub symmetric: bool,
+    /// The directional albedo, where it is known and the same at all angles.
+    pub albedo: Option<Rgb<R>>,
+    /// How far the albedo may lie from its known value.
+    pub albedo_error: f32,
 }
 
-impl Properties {
-    /// Reciprocal, conserves energy exactly, and accurate to 8 units.
-    pub const LAWFUL: Self = Self { reciprocal: true, conserving: true, excess: 0.0, units: 8.0 };
+impl<R> Properties<R> {
+    /// Reciprocal, conserves energy exactly, accurate to 8 units; continuous reflection whose albedo is not known.
+    pub const LAWFUL: Self = Self {
+        reciprocal: true,
+        conserving: true,
+        excess: 0.0,
+        units: 8.0,
+        all_delta: false,
+        transmits: false,
+        one_to_one: false,
+        symmetric: true,
+        albedo: None,
+        albedo_error: 0.0,
+    };
+
+    /// What two lobes claim together, each as it is; their known albedos add.
+    pub fn and(self, other: Self) -> Self
+    where
+        R: Real,
+    {
+        Self {
+            reciprocal: self.reciprocal && other.reciprocal,
+            conserving: self.conserving && other.conserving,
+            excess: self.excess.max(other.excess),
+            units: self.units.max(other.units),
+            all_delta: self.all_delta && other.all_delta,
+            transmits: self.transmits || other.transmits,
+            one_to_one: false,
+            symmetric: self.symmetric && other.symmetric,
+            albedo: self.albedo.zip(other.albedo).map(|(a, b)| a + b),
+            albedo_error: self.albedo_error + other.albedo_error,
+        }
+    }
 }
 
 /// A scattering model with its parameters, in the local frame.
-///
-/// Implement [`Lobe::eval`] and [`Lobe::sample`]; or, where something expensive depends on wo alone, [`Lobe::prepare`] with
-/// [`Lobe::eval_prepared`] and [`Lobe::sample_prepared`]. The one pair is made from the other.
 pub trait Lobe<R: Real> {
-    /// f·|cos_i| and density of the continuous part: 0, 0 for a purely discrete lobe.
-    #[inline(always)]
-    fn eval(&self, wo: Vec3<R>, wi: Vec3<R>) -> Value<R> {
-        self.eval_prepared(wo, &self.prepare(wo), wi)
-    }
+    /// What depends on wo alone; `()` where nothing does.
+    type Prepared: Copy + Debug;
+
+    /// How many numbers [`Event::lobe`] takes: 1 for a lobe that is no combination.
+    const LOBES: u32 = 1;
+
+    /// What depends on wo alone: computed once where a closure is asked several times. A lobe that transmits keeps here what
+    /// `transport` makes of its values.
+    fn prepare(&self, wo: Vec3<R>, transport: Transport) -> Self::Prepared;
+
+    /// f·|cos_i| and density of the continuous part, with what [`Lobe::prepare`] returned for the same wo: 0, 0 for a lobe that is
+    /// all delta.
+    fn eval(&self, wo: Vec3<R>, prepared: &Self::Prepared, wi: Vec3<R>) -> Value<R>;
 
     /// Chooses wi for wo. `u` are three uniform numbers in [0, 1); the first serves choices, the others positions.
-    #[inline(always)]
-    fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R> {
-        self.sample_prepared(wo, &self.prepare(wo), u)
-    }
+    fn sample(&self, wo: Vec3<R>, prepared: &Self::Prepared, u: [R; 3]) -> Sample<R>;
 
-    /// What depends on wo alone: computed once where a closure is asked several times.
-    #[inline(always)]
-    fn prepare(&self, _wo: Vec3<R>) -> Prepared<R> {
-        Prepared([R::ZERO; 5])
-    }
-
-    /// [`Lobe::eval`] with what [`Lobe::prepare`] returned for the same wo.
-    #[inline(always)]
-    fn eval_prepared(&self, wo: Vec3<R>, _prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
-        self.eval(wo, wi)
-    }
-
-    /// [`Lobe::sample`] with what [`Lobe::prepare`] returned for the same wo.
-    #[inline(always)]
-    fn sample_prepared(&self, wo: Vec3<R>, _prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
-        self.sample(wo, u)
-    }
-
-    /// Weight times probability, and probability, of a discrete event that [`Lobe::sample`] returned for this wo.
-    fn discrete(&self, _wo: Vec3<R>, _event: &Event<R>) -> Value<R> {
-        Value::zero()
-    }
+    /// Weight times probability, and probability, of a delta event that [`Lobe::sample`] returned for this wo.
+    fn delta(&self, wo: Vec3<R>, prepared: &Self::Prepared, sample: &Sample<R>) -> Value<R>;
 
     /// About how much of the light from wo is scattered: steers the choice between lobes, never a result.
     fn albedo_estimate(&self, wo: Vec3<R>) -> Rgb<R>;
@@ -135,17 +216,94 @@ pub trait Lobe<R: Real> {
     /// Whether the parameters lie in their domain.
     fn domain(&self) -> R::Mask;
 
-    /// η² seen from wo, η = η_t/η_i: what transmitted radiance is divided by. Multiplied by it, a transmitted value is that of
-    /// importance, which conserves energy. 1 for lobes that only reflect.
+    /// What the lobe claims of itself at these parameters.
     #[inline(always)]
-    fn compression(&self, _wo: Vec3<R>) -> R {
+    fn properties(&self) -> Properties<R> {
+        Properties::LAWFUL
+    }
+
+    /// The largest weight that a sample for wo may have in any channel; infinite where none is promised.
+    #[inline(always)]
+    fn largest_weight(&self, _wo: Vec3<R>) -> R {
+        R::lit(f64::INFINITY)
+    }
+
+    /// η² seen from wo, η = η_t/η_i: what transmitted radiance is divided by, and transmitted importance is not. 1 for lobes that only
+    /// reflect.
+    #[inline(always)]
+    fn radiance_scale(&self, _wo: Vec3<R>) -> R {
         R::ONE
     }
 
-    /// Which laws the model claims to obey at these parameters.
+    /// Whether the value is one constant over the hemisphere, that of Lambert: what lies above it then loses nothing in
+    /// [`Layering::Reciprocal`].
     #[inline(always)]
-    fn properties(&self) -> Properties {
-        Properties::LAWFUL
+    fn is_lambertian(&self) -> bool {
+        false
+    }
+
+    /// This lobe times a colour in \[0, 1\].
+    #[inline(always)]
+    fn times(self, weight: Rgb<R>) -> Weighted<R, Self>
+    where
+        Self: Sized,
+    {
+        Weighted { weight, lobe: self }
+    }
+
+    /// This lobe and another side by side: their light adds.
+    #[inline(always)]
+    fn plus<B: Lobe<R>>(self, other: B) -> Mix<Self, B>
+    where
+        Self: Sized,
+    {
+        Mix(self, other)
+    }
+}
+
+/// A borrowed lobe is a lobe.
+impl<R: Real, L: Lobe<R>> Lobe<R> for &L {
+    type Prepared = L::Prepared;
+    const LOBES: u32 = L::LOBES;
+    #[inline(always)]
+    fn prepare(&self, wo: Vec3<R>, transport: Transport) -> Self::Prepared {
+        (**self).prepare(wo, transport)
+    }
+    #[inline(always)]
+    fn eval(&self, wo: Vec3<R>, prepared: &Self::Prepared, wi: Vec3<R>) -> Value<R> {
+        (**self).eval(wo, prepared, wi)
+    }
+    #[inline(always)]
+    fn sample(&self, wo: Vec3<R>, prepared: &Self::Prepared, u: [R; 3]) -> Sample<R> {
+        (**self).sample(wo, prepared, u)
+    }
+    #[inline(always)]
+    fn delta(&self, wo: Vec3<R>, prepared: &Self::Prepared, sample: &Sample<R>) -> Value<R> {
+        (**self).delta(wo, prepared, sample)
+    }
+    #[inline(always)]
+    fn albedo_estimate(&self, wo: Vec3<R>) -> Rgb<R> {
+        (**self).albedo_estimate(wo)
+    }
+    #[inline(always)]
+    fn domain(&self) -> R::Mask {
+        (**self).domain()
+    }
+    #[inline(always)]
+    fn properties(&self) -> Properties<R> {
+        (**self).properties()
+    }
+    #[inline(always)]
+    fn largest_weight(&self, wo: Vec3<R>) -> R {
+        (**self).largest_weight(wo)
+    }
+    #[inline(always)]
+    fn radiance_scale(&self, wo: Vec3<R>) -> R {
+        (**self).radiance_scale(wo)
+    }
+    #[inline(always)]
+    fn is_lambertian(&self) -> bool {
+        (**self).is_lambertian()
     }
 }
 
@@ -160,11 +318,25 @@ impl<R: Real> Value<R> {
     pub fn or_zero(self, mask: R::Mask) -> Self {
         Self { f_cos: self.f_cos.or_zero(mask), pdf: self.pdf.or_zero(mask) }
     }
+    /// The light times a colour.
+    #[inline(always)]
+    pub fn times(self, weight: Rgb<R>) -> Self {
+        Self { f_cos: self.f_cos * weight, ..self }
+    }
+    /// `yes` where `mask`, `no` elsewhere.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+        Self { f_cos: Rgb::select(mask, yes.f_cos, no.f_cos), pdf: R::select(mask, yes.pdf, no.pdf) }
+    }
     /// Finite and non-negative throughout.
     #[inline(always)]
     pub fn is_sound(&self) -> R::Mask {
-        let sound = |x: R| x.ge(R::ZERO) & x.is_finite();
-        sound(self.f_cos.r) & sound(self.f_cos.g) & sound(self.f_cos.b) & sound(self.pdf)
+        let Rgb { r, g, b } = self.f_cos;
+        // A NaN on the left of `min` is passed over for what stands on the right, so the sum looks for it. The sum is infinite or
+        // NaN where one is; and where it overflows, beyond any density that a direction of f32 can have.
+        let least = r.min(g).min(b.min(self.pdf));
+        let sum = (r + g) + (b + self.pdf);
+        least.ge(R::ZERO) & sum.is_finite()
     }
 }
 
@@ -173,7 +345,7 @@ impl<R: Real> Event<R> {
     #[inline(always)]
     pub fn reflected(failed: R::Mask) -> Self {
         let no = R::Mask::splat(false);
-        Self { lobe: R::int(0), transmitted: no, discrete: no, failed }
+        Self { lobe: R::int(0), transmitted: no, is_delta: no, failed }
     }
 
     /// `yes` where `mask`, `no` elsewhere.
@@ -183,78 +355,26 @@ impl<R: Real> Event<R> {
         Self {
             lobe: R::int_select(mask, yes.lobe, no.lobe),
             transmitted: choose(yes.transmitted, no.transmitted),
-            discrete: choose(yes.discrete, no.discrete),
+            is_delta: choose(yes.is_delta, no.is_delta),
             failed: choose(yes.failed, no.failed),
         }
     }
 }
 
-/// The table of models: calls `$macro!` with the name of every lobe. The enum that closures hold, the proof that the
-/// kernel cannot panic and the rows of the validation are made from it, so a lobe that is missing somewhere fails to build.
-#[macro_export]
-macro_rules! for_each_lobe {
-    ($macro:ident) => {
-        $macro! { Lambert, Mirror, Conductor, Dielectric, RoughDielectric, Phong, Eon }
-    };
+impl<R: Real> Sample<R> {
+    /// Nothing was sampled.
+    #[inline(always)]
+    pub fn nothing() -> Self {
+        Self { wi: Vec3::unit_z(), event: Event::reflected(R::Mask::splat(true)) }
+    }
+    /// `yes` where `mask`, `no` elsewhere.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+        Self { wi: Vec3::select(mask, yes.wi, no.wi), event: Event::select(mask, yes.event, no.event) }
+    }
+    /// The same with its lobe numbered `by` higher.
+    #[inline(always)]
+    pub(crate) fn renumbered(self, by: u32) -> Self {
+        Self { event: Event { lobe: R::int_add(self.event.lobe, R::int(by)), ..self.event }, ..self }
+    }
 }
-
-macro_rules! any_lobe {
-    ($($model:ident),*) => {
-        /// Any of the kernel's lobes.
-        #[derive(Clone, Copy, Debug)]
-        pub enum AnyLobe<R> {$(
-            #[doc = concat!("See [`", stringify!($model), "`].")]
-            $model($model<R>),
-        )*}
-
-        impl<R: Real> Lobe<R> for AnyLobe<R> {
-            #[inline]
-            fn eval(&self, wo: Vec3<R>, wi: Vec3<R>) -> Value<R> {
-                match self {$( Self::$model(lobe) => lobe.eval(wo, wi), )*}
-            }
-            #[inline]
-            fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R> {
-                match self {$( Self::$model(lobe) => lobe.sample(wo, u), )*}
-            }
-            #[inline]
-            fn prepare(&self, wo: Vec3<R>) -> Prepared<R> {
-                match self {$( Self::$model(lobe) => lobe.prepare(wo), )*}
-            }
-            #[inline]
-            fn eval_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
-                match self {$( Self::$model(lobe) => lobe.eval_prepared(wo, prepared, wi), )*}
-            }
-            #[inline]
-            fn sample_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
-                match self {$( Self::$model(lobe) => lobe.sample_prepared(wo, prepared, u), )*}
-            }
-            #[inline]
-            fn discrete(&self, wo: Vec3<R>, event: &Event<R>) -> Value<R> {
-                match self {$( Self::$model(lobe) => lobe.discrete(wo, event), )*}
-            }
-            #[inline]
-            fn albedo_estimate(&self, wo: Vec3<R>) -> Rgb<R> {
-                match self {$( Self::$model(lobe) => lobe.albedo_estimate(wo), )*}
-            }
-            #[inline(always)]
-            fn domain(&self) -> R::Mask {
-                match self {$( Self::$model(lobe) => lobe.domain(), )*}
-            }
-            #[inline(always)]
-            fn compression(&self, wo: Vec3<R>) -> R {
-                match self {$( Self::$model(lobe) => lobe.compression(wo), )*}
-            }
-            #[inline(always)]
-            fn properties(&self) -> Properties {
-                match self {$( Self::$model(lobe) => Lobe::<R>::properties(lobe), )*}
-            }
-        }
-
-        $(impl<R> From<$model<R>> for AnyLobe<R> {
-            fn from(lobe: $model<R>) -> Self {
-                Self::$model(lobe)
-            }
-        })*
-    };
-}
-for_each_lobe!(any_lobe);

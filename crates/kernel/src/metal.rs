@@ -8,29 +8,21 @@ use crate::fresnel::Fresnel;
 use crate::real::Real;
 use crate::rgb::Rgb;
 
-/// A metal whose index is known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Metal {
-    /// Ag
-    Silver,
-    /// Al
-    Aluminium,
-    /// Au
-    Gold,
-    /// Cu
-    Copper,
+crate::choice! {
+    /// A metal whose index is known.
+    pub enum Metal {
+        /// Ag
+        Silver = "silver",
+        /// Al
+        Aluminium = "aluminium",
+        /// Au
+        Gold = "gold",
+        /// Cu
+        Copper = "copper",
+    }
 }
 
 impl Metal {
-    /// All of them, with their English names in lower case.
-    pub const ALL: [(&'static str, Self); 4] =
-        [("silver", Self::Silver), ("aluminium", Self::Aluminium), ("gold", Self::Gold), ("copper", Self::Copper)];
-
-    /// The metal of this name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|(known, _)| *known == name).map(|(_, metal)| metal)
-    }
-
     /// η and k at red, green and blue.
     pub const fn index(self) -> [Rgb<f64>; 2] {
         match self {
@@ -52,6 +44,7 @@ impl<R: Real> From<Metal> for Fresnel<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Choice;
 
     #[test]
     fn gold_is_yellow_copper_red_and_silver_white() {

@@ -18,6 +18,7 @@ mod ggx;
 pub use beckmann::Beckmann;
 pub use ggx::Ggx;
 
+use crate::model::{ALPHA, MICROFACET_ROUGHNESS};
 use crate::real::{Mask, Real};
 use crate::vec3::Vec3;
 
@@ -25,84 +26,119 @@ use crate::vec3::Vec3;
 /// (In `f32` that is so below 1e-4: the lobe stays finite and its weights right, but its shape is that of the lattice.)
 pub const ALPHA_MIN: f64 = 1e-8;
 
-/// How masking of wo and shadowing of wi go together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Masking {
-    /// Points that wo sees high up are seen by wi too: 1/(1 + Λ(wo) + Λ(wi)).
-    HeightCorrelated,
-    /// G₁(wo) G₁(wi): darker, as if heights did not matter. What Walter et al. 2007 and Mitsuba use.
-    Separable,
+crate::choice! {
+    /// How masking of wo and shadowing of wi go together.
+    pub enum Masking {
+        /// Points that wo sees high up are seen by wi too: 1/(1 + Λ(wo) + Λ(wi)).
+        HeightCorrelated = "correlated",
+        /// G₁(wo) G₁(wi): darker, as if heights did not matter. What Walter et al. 2007 and Mitsuba use.
+        Separable = "separable",
+    }
 }
 
-/// A distribution of microfacet normals.
-#[derive(Clone, Copy, Debug)]
-pub enum Microfacets<R> {
-    /// See [`Ggx`].
-    Ggx(Ggx<R>),
-    /// See [`Beckmann`].
-    Beckmann(Beckmann<R>),
+crate::choice! {
+    /// Which distribution of microfacet normals.
+    pub enum Distribution {
+        /// See [`Ggx`].
+        Ggx = "ggx",
+        /// See [`Beckmann`].
+        Beckmann = "beckmann",
+    }
+}
+
+crate::one_of! {
+    /// How rough: alpha is the width of the distribution of slopes.
+    pub struct Alphas<R> {
+        /// Along the tangent.
+        alpha_x: R in ALPHA,
+        /// Along the bitangent.
+        alpha_y: R in ALPHA,
+    }
+    or (
+        /// Along both.
+        alpha: R in ALPHA
+    ) => Self { alpha_x: alpha, alpha_y: alpha };
+    or (
+        /// Its square is alpha: 0.1 is polished, 0.3 brushed, 0.7 sandblasted.
+        roughness: R in MICROFACET_ROUGHNESS
+    ) => Self { alpha_x: roughness * roughness, alpha_y: roughness * roughness };
+    or () => Self { alpha_x: R::lit(0.3 * 0.3), alpha_y: R::lit(0.3 * 0.3) };
+}
+
+crate::group! {
+    /// A distribution of microfacet normals.
+    pub struct Microfacets<R> {
+        /// Which distribution of normals.
+        distribution: Distribution = Ggx,
+        /// How rough.
+        alphas: Alphas<R>,
+    }
 }
 
 impl<R> From<Ggx<R>> for Microfacets<R> {
-    fn from(ggx: Ggx<R>) -> Self {
-        Self::Ggx(ggx)
+    #[inline(always)]
+    fn from(Ggx { alpha_x, alpha_y }: Ggx<R>) -> Self {
+        Self { distribution: Distribution::Ggx, alphas: Alphas { alpha_x, alpha_y } }
     }
 }
 
 impl<R> From<Beckmann<R>> for Microfacets<R> {
-    fn from(beckmann: Beckmann<R>) -> Self {
-        Self::Beckmann(beckmann)
+    #[inline(always)]
+    fn from(Beckmann { alpha_x, alpha_y }: Beckmann<R>) -> Self {
+        Self { distribution: Distribution::Beckmann, alphas: Alphas { alpha_x, alpha_y } }
     }
 }
 
 impl<R: Real> Microfacets<R> {
+    #[inline(always)]
+    fn ggx(&self) -> Ggx<R> {
+        Ggx { alpha_x: self.alphas.alpha_x, alpha_y: self.alphas.alpha_y }
+    }
+    #[inline(always)]
+    fn beckmann(&self) -> Beckmann<R> {
+        Beckmann { alpha_x: self.alphas.alpha_x, alpha_y: self.alphas.alpha_y }
+    }
     /// D of the normal along h (any length, h.z ≥ 0), with |h|² given \[1/sr\].
     #[inline(always)]
     pub fn d(&self, h: Vec3<R>, h_length2: R) -> R {
-        match self {
-            Self::Ggx(ggx) => ggx.d(h, h_length2),
-            Self::Beckmann(beckmann) => beckmann.d(h, h_length2),
+        match self.distribution {
+            Distribution::Ggx => self.ggx().d(h, h_length2),
+            Distribution::Beckmann => self.beckmann().d(h, h_length2),
         }
     }
     /// s(w) = |cosθ|(1 + 2Λ(w)).
     #[inline(always)]
     pub fn smith_length(&self, w: Vec3<R>) -> R {
-        match self {
-            Self::Ggx(ggx) => ggx.smith_length(w),
-            Self::Beckmann(beckmann) => beckmann.smith_length(w),
+        match self.distribution {
+            Distribution::Ggx => self.ggx().smith_length(w),
+            Distribution::Beckmann => self.beckmann().smith_length(w),
         }
     }
     /// Which visible normals reflectors sample: those that may reflect above the horizon, as far as that is known.
     #[inline(always)]
     pub fn reach(&self, wo: Vec3<R>, s_o: R) -> Reach<R> {
-        match self {
-            Self::Ggx(ggx) => ggx.reach(wo, s_o),
-            Self::Beckmann(_) => Reach::whole(wo, s_o),
+        match self.distribution {
+            Distribution::Ggx => self.ggx().reach(wo, s_o),
+            Distribution::Beckmann => Reach::whole(wo, s_o),
         }
     }
     /// A normal of any length, distributed as those visible from wo (above the surface) within reach, with s(wo) given.
     #[inline(always)]
     pub fn sample_visible(&self, wo: Vec3<R>, s_o: R, reach: Reach<R>, u: [R; 2]) -> Vec3<R> {
-        match self {
-            Self::Ggx(ggx) => ggx.sample_visible(wo, s_o, reach, u),
-            Self::Beckmann(beckmann) => beckmann.sample_visible(wo, u),
+        match self.distribution {
+            Distribution::Ggx => self.ggx().sample_visible(wo, s_o, reach, u),
+            Distribution::Beckmann => self.beckmann().sample_visible(wo, u),
         }
     }
-    /// The widths along tangent and bitangent.
+    /// alpha along tangent and bitangent.
     #[inline(always)]
-    pub fn widths(&self) -> [R; 2] {
-        match self {
-            Self::Ggx(ggx) => [ggx.alpha_x, ggx.alpha_y],
-            Self::Beckmann(beckmann) => [beckmann.alpha_x, beckmann.alpha_y],
-        }
+    pub fn alphas(&self) -> [R; 2] {
+        [self.alphas.alpha_x, self.alphas.alpha_y]
     }
-    /// Whether both widths lie in [1e-8, 1].
+    /// Whether both alphas are the same, in every lane.
     #[inline(always)]
-    pub fn domain(&self) -> R::Mask {
-        match self {
-            Self::Ggx(ggx) => ggx.domain(),
-            Self::Beckmann(beckmann) => beckmann.domain(),
-        }
+    pub fn is_isotropic(&self) -> R::Mask {
+        self.alphas.alpha_x.same(self.alphas.alpha_y)
     }
 }
 
@@ -161,11 +197,4 @@ fn lengthened<R: Real>(h: Vec3<R>, h_length2: R) -> (Vec3<R>, R) {
         return (h, h_length2);
     }
     (Vec3::select(tiny, h.normalize_or(Vec3::unit_z()), h), R::select(tiny, R::ONE, h_length2))
-}
-
-/// Whether both widths lie in [1e-8, 1], 1e-8 as rounded to `f32` included.
-#[inline(always)]
-fn widths_in_domain<R: Real>(alpha_x: R, alpha_y: R) -> R::Mask {
-    let inside = |alpha: R| alpha.ge(R::lit(0.999_999 * ALPHA_MIN)) & alpha.le(R::ONE);
-    inside(alpha_x) & inside(alpha_y)
 }

@@ -94,6 +94,13 @@ impl<R: Real> Mul<R> for Rgb<R> {
         self.map(|x| x * k)
     }
 }
+impl<R: Real> From<R> for Rgb<R> {
+    /// A grey.
+    #[inline(always)]
+    fn from(x: R) -> Self {
+        Self::splat(x)
+    }
+}
 impl<R> From<[R; 3]> for Rgb<R> {
     fn from([r, g, b]: [R; 3]) -> Self {
         Self::new(r, g, b)

@@ -1,5 +1,7 @@
 //! What the unit tests share: repeatable random numbers, the numbers that break things, and comparisons.
 
+use crate::lobe::{Lobe, Sample, Transport, Value};
+use crate::real::Real;
 use crate::vec3::Vec3;
 use std::vec::Vec;
 
@@ -44,3 +46,17 @@ pub(crate) fn same_bits(a: f32, b: f32) -> bool {
 pub(crate) fn close(a: f64, b: f64, tolerance: f64) -> bool {
     (a - b).abs() <= tolerance
 }
+
+/// A lobe without a closure, for radiance, prepared anew for each call.
+pub(crate) trait Bare<R: Real>: Lobe<R> {
+    fn value(&self, wo: Vec3<R>, wi: Vec3<R>) -> Value<R> {
+        self.eval(wo, &self.prepare(wo, Transport::Radiance), wi)
+    }
+    fn draw(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R> {
+        self.sample(wo, &self.prepare(wo, Transport::Radiance), u)
+    }
+    fn delta_of(&self, wo: Vec3<R>, sample: &Sample<R>) -> Value<R> {
+        self.delta(wo, &self.prepare(wo, Transport::Radiance), sample)
+    }
+}
+impl<R: Real, L: Lobe<R>> Bare<R> for L {}

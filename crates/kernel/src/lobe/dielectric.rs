@@ -6,17 +6,19 @@
 //!
 //! Cost: five divisions and one root.
 
-use super::{Event, Lobe, Sample, Value};
-use crate::fresnel::{Interface, index_in_domain, interface, refracted_cosine};
+use super::{Event, Lobe, Properties, Sample, Transport, Value};
+use crate::fresnel::{Interface, interface, refracted_cosine};
+use crate::model::{INDEX, Parameters};
 use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
 use crate::vec3::Vec3;
 
-/// A smooth interface. The normal points away from the inside, which may be thinner than the outside.
-#[derive(Clone, Copy, Debug)]
-pub struct Dielectric<R> {
-    /// Index of the inside over that of the outside, in [0.01, 100]. 1 is no interface at all.
-    pub eta: R,
+crate::model! {
+    /// A smooth interface: clear glass, water. The normal points away from the inside, which may be thinner than the outside.
+    pub struct Dielectric<R> = "dielectric" {
+        /// Index of the inside over that of the outside; 1 is no interface at all.
+        eta("ior"): R = 1.5 in INDEX,
+    }
 }
 
 impl<R: Real> Dielectric<R> {
@@ -42,13 +44,20 @@ pub(super) fn relative_index<R: Real>(eta: R, wo: Vec3<R>) -> R {
 }
 
 impl<R: Real> Lobe<R> for Dielectric<R> {
+    type Prepared = Transport;
+
+    #[inline(always)]
+    fn prepare(&self, _wo: Vec3<R>, transport: Transport) -> Transport {
+        transport
+    }
+
     #[inline]
-    fn eval(&self, _wo: Vec3<R>, _wi: Vec3<R>) -> Value<R> {
+    fn eval(&self, _wo: Vec3<R>, _prepared: &Transport, _wi: Vec3<R>) -> Value<R> {
         Value::zero()
     }
 
     #[inline]
-    fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R> {
+    fn sample(&self, wo: Vec3<R>, _prepared: &Transport, u: [R; 3]) -> Sample<R> {
         let (eta, cos_t, at) = self.seen_from(wo);
         let reflected = u[0].lt(at.reflected);
         // Snell's law for the tangential part, and the normal part on the other side; unit as wo is.
@@ -56,7 +65,7 @@ impl<R: Real> Lobe<R> for Dielectric<R> {
         let refracted = Vec3::new(-wo.x * thin, -wo.y * thin, cos_t.copysign(-wo.z)).normalize_or(Vec3::unit_z());
         let wi = Vec3::select(reflected, Vec3::new(-wo.x, -wo.y, wo.z), refracted);
         let event = Event {
-            discrete: R::Mask::splat(true),
+            is_delta: R::Mask::splat(true),
             transmitted: !reflected,
             // In the surface itself there is no side; and rounding may leave a hair between F and 1 in total reflection.
             ..Event::reflected(wo.z.same(R::ZERO) | (!reflected & at.transmitted.le(R::ZERO)))
@@ -65,11 +74,15 @@ impl<R: Real> Lobe<R> for Dielectric<R> {
     }
 
     #[inline]
-    fn discrete(&self, wo: Vec3<R>, event: &Event<R>) -> Value<R> {
+    fn delta(&self, wo: Vec3<R>, transport: &Transport, sample: &Sample<R>) -> Value<R> {
         let (eta, _, at) = self.seen_from(wo);
+        let event = sample.event;
         let pdf = R::select(event.transmitted, at.transmitted, at.reflected);
-        let f_cos = R::select(event.transmitted, pdf / (eta * eta), pdf);
-        Value { f_cos: Rgb::splat(f_cos), pdf }.or_zero(event.discrete & !event.failed & !wo.z.same(R::ZERO))
+        let f_cos = match transport {
+            Transport::Radiance => R::select(event.transmitted, pdf / (eta * eta), pdf),
+            Transport::Importance => pdf,
+        };
+        Value { f_cos: Rgb::splat(f_cos), pdf }.or_zero(event.is_delta & !event.failed & !wo.z.same(R::ZERO))
     }
 
     #[inline(always)]
@@ -79,11 +92,21 @@ impl<R: Real> Lobe<R> for Dielectric<R> {
 
     #[inline(always)]
     fn domain(&self) -> R::Mask {
-        index_in_domain(self.eta)
+        self.in_domain()
     }
 
     #[inline(always)]
-    fn compression(&self, wo: Vec3<R>) -> R {
+    fn properties(&self) -> Properties<R> {
+        Properties { all_delta: true, transmits: true, ..Properties::LAWFUL }
+    }
+
+    #[inline(always)]
+    fn largest_weight(&self, _wo: Vec3<R>) -> R {
+        R::ONE
+    }
+
+    #[inline(always)]
+    fn radiance_scale(&self, wo: Vec3<R>) -> R {
         relative_index(self.eta, wo).sqr()
     }
 }
@@ -91,7 +114,7 @@ impl<R: Real> Lobe<R> for Dielectric<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{Random, close};
+    use crate::testing::{Bare, Random, close};
 
     #[test]
     fn light_bends_by_snells_law_and_finds_its_way_back() {
@@ -100,7 +123,7 @@ mod tests {
             let glass = Dielectric::new(eta);
             for _ in 0..1000 {
                 let wo = random.direction();
-                let sample = glass.sample(wo, [0.999_999_9, 0.0, 0.0]);
+                let sample = glass.draw(wo, [0.999_999_9, 0.0, 0.0]);
                 if !sample.event.transmitted || sample.event.failed {
                     continue;
                 }
@@ -108,7 +131,7 @@ mod tests {
                 let (sin_o, sin_i) = (wo.x.hypot(wo.y), sample.wi.x.hypot(sample.wi.y));
                 assert!(close((sin_o / sin_i / inside).into(), 1.0, 3e-6) || sin_i < 1e-3, "{eta} {wo:?} {sample:?}");
                 assert!(sample.wi.z * wo.z < 0.0);
-                let back = glass.sample(sample.wi, [0.999_999_9, 0.0, 0.0]);
+                let back = glass.draw(sample.wi, [0.999_999_9, 0.0, 0.0]);
                 // From the denser side one ulp of sinθ becomes η of them, and is divided by the cosine.
                 let slack = 4e-7 * f64::from(eta.max(1.0 / eta)).powi(2) / f64::from(wo.z.abs()).max(1e-3);
                 assert!(close((back.wi - wo).length().into(), 0.0, slack), "{eta} {wo:?} {:?}", back.wi);
@@ -122,23 +145,23 @@ mod tests {
         let glass = Dielectric::new(1.5_f32);
         for _ in 0..1000 {
             let wo = random.direction();
-            let sample = glass.sample(wo, [random.unit(), 0.0, 0.0]);
-            let value = glass.discrete(wo, &sample.event);
+            let sample = glass.draw(wo, [random.unit(), 0.0, 0.0]);
+            let value = glass.delta_of(wo, &sample);
             let weight = f64::from(value.f_cos.r / value.pdf);
-            let right = if sample.event.transmitted { 1.0 / f64::from(glass.compression(wo)) } else { 1.0 };
+            let right = if sample.event.transmitted { 1.0 / f64::from(glass.radiance_scale(wo)) } else { 1.0 };
             assert!(close(weight / right, 1.0, 1e-6), "{wo:?}: {weight}");
         }
         // Seen from outside, light from within glass is thinned by 1.5²; seen from within, light from outside is denser.
-        assert!(close(glass.compression(Vec3::unit_z()).into(), 2.25, 1e-6));
-        assert!(close(glass.compression(-Vec3::unit_z()).into(), 1.0 / 2.25, 1e-6));
+        assert!(close(glass.radiance_scale(Vec3::unit_z()).into(), 2.25, 1e-6));
+        assert!(close(glass.radiance_scale(-Vec3::unit_z()).into(), 1.0 / 2.25, 1e-6));
     }
 
     #[test]
     fn equal_indices_let_all_light_pass_straight() {
         let nothing = Dielectric::new(1.0_f32);
         let wo = Vec3::new(0.6, 0.0, 0.8);
-        let sample = nothing.sample(wo, [0.3, 0.0, 0.0]);
+        let sample = nothing.draw(wo, [0.3, 0.0, 0.0]);
         assert!(sample.event.transmitted && (sample.wi + wo).length() < 1e-6, "{sample:?}");
-        assert!(close(nothing.discrete(wo, &sample.event).f_cos.g.into(), 1.0, 1e-6));
+        assert!(close(nothing.delta_of(wo, &sample).f_cos.g.into(), 1.0, 1e-6));
     }
 }

@@ -9,7 +9,7 @@
 //!   \rho_{ms} = \frac{\rho^2 \bar E_F}{1 - \rho(1 - \bar E_F)},$$
 //! $c_1 = 1/2 - 2/(3\pi)$, $c_2 = 2/3 - 28/(15\pi)$. The second term returns what the first loses between facets.
 //!
-//! G is [`Directional::Exact`], with an arc cosine, or [`Directional::Fitted`], a polynomial. Both are reciprocal. Exact, a white
+//! G is [`EonAlbedo::Analytic`], with an arc cosine, or [`EonAlbedo::Fitted`], a polynomial. Both are reciprocal. Exact, a white
 //! surface returns exactly all light; fitted, within 2e-3 of it, above and below: energy is bounded only up to that. $r = 0$
 //! is Lambert, at about five times its price. ρ is the albedo of single scattering; colours get a little darker and more
 //! saturated as r grows.
@@ -25,33 +25,36 @@
 //!
 //! Cost of `eval`: 8 divisions and 6 square roots fitted, 12 and 6 exact.
 
-use super::{Event, Lobe, Properties, Sample, Value};
+use super::{Event, Lobe, Properties, Sample, Transport, Value};
 use crate::frame::both_above;
 use crate::math::{atan2_turns, sin_cos_turns};
-use crate::real::Real;
+use crate::model::{Parameters, REFLECTANCE, ROUGHNESS};
+use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
 use crate::vec3::Vec3;
 use crate::warp::{pdf_uniform_sphere, sample_uniform_sphere};
 use core::f64::consts::{FRAC_1_PI, FRAC_PI_2, TAU};
 
-/// How the directional albedo of single scattering is computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Directional {
-    /// By its closed form.
-    Exact,
-    /// By the paper's polynomial of degree four: E_F is off by 1e-3 at most.
-    Fitted,
+crate::choice! {
+    /// How the directional albedo of single scattering is computed.
+    pub enum EonAlbedo {
+        /// By its closed form.
+        Analytic = "analytic" | "exact",
+        /// By the paper's polynomial of degree four: E_F is off by 1e-3 at most.
+        Fitted = "fitted",
+    }
 }
 
-/// A rough diffuse reflector.
-#[derive(Clone, Copy, Debug)]
-pub struct Eon<R> {
-    /// ρ, the albedo of single scattering, each channel in \[0, 1\].
-    pub albedo: Rgb<R>,
-    /// r in \[0, 1\].
-    pub roughness: R,
-    /// Which directional albedo.
-    pub directional: Directional,
+crate::model! {
+    /// A rough diffuse reflector, the energy-preserving Oren–Nayar model.
+    pub struct Eon<R> = "eon" {
+        /// ρ, the albedo of single scattering.
+        albedo("base_color"): Rgb<R> = 0.8 in REFLECTANCE,
+        /// r: 0 is Lambert's law, 0.5 plaster.
+        roughness: R = 0.5 in ROUGHNESS,
+        /// How the directional albedo that it conserves is computed.
+        directional("albedo"): EonAlbedo = Analytic,
+    }
 }
 
 /// No sample weighs more than this times the largest channel of the albedo. Measured over a million pairs, at roughness down
@@ -76,7 +79,7 @@ const LOSS: [f64; 5] = [
 impl<R> Eon<R> {
     /// A rough diffuse reflector with the exact directional albedo.
     pub const fn new(albedo: Rgb<R>, roughness: R) -> Self {
-        Self { albedo, roughness, directional: Directional::Exact }
+        Self { albedo, roughness, directional: EonAlbedo::Analytic }
     }
 }
 
@@ -85,7 +88,7 @@ impl<R: Real> Eon<R> {
     #[inline(always)]
     fn loss(&self, w: Vec3<R>) -> R {
         let loss = match self.directional {
-            Directional::Exact => {
+            EonAlbedo::Analytic => {
                 let s = w.x.mul_add(w.x, w.y * w.y).sqrt();
                 let r = (R::ONE + s).recip();
                 let arcsin = atan2_turns(w.z, s) * R::lit(TAU);
@@ -95,7 +98,7 @@ impl<R: Real> Eon<R> {
                 let rest = (cubic * r).mul_add(R::lit(-2.0 / 3.0), s);
                 w.z.mul_add(s.mul_add(rest, flat), s * arcsin) * R::lit(FRAC_1_PI)
             }
-            Directional::Fitted => LOSS.iter().fold(R::ZERO, |sum, &c| sum.mul_add(w.z, R::lit(c))),
+            EonAlbedo::Fitted => LOSS.iter().fold(R::ZERO, |sum, &c| sum.mul_add(w.z, R::lit(c))),
         };
         // The fit goes below 0 by 5e-4 at grazing.
         loss.max(R::ZERO)
@@ -191,8 +194,13 @@ impl<R: Real> Cltc<R> {
 }
 
 impl<R: Real> Lobe<R> for Eon<R> {
+    type Prepared = ();
+
+    #[inline(always)]
+    fn prepare(&self, _wo: Vec3<R>, _transport: Transport) {}
+
     #[inline]
-    fn eval(&self, wo: Vec3<R>, wi: Vec3<R>) -> Value<R> {
+    fn eval(&self, wo: Vec3<R>, _prepared: &(), wi: Vec3<R>) -> Value<R> {
         let r = self.roughness;
         let s = wo.x.mul_add(wi.x, wo.y * wi.y);
         // μ_i (1 + r s/t), for either sign of s.
@@ -211,12 +219,17 @@ impl<R: Real> Lobe<R> for Eon<R> {
     }
 
     #[inline]
-    fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R> {
+    fn sample(&self, wo: Vec3<R>, _prepared: &(), u: [R; 3]) -> Sample<R> {
         let sphere = sample_uniform_sphere([u[1], u[2]]);
         let uniform = Vec3::new(sphere.x, sphere.y, sphere.z.abs());
         let cltc = Cltc::of(wo, self.roughness).sample([u[1], u[2]]);
         let wi = Vec3::select(u[0].lt(self.uniform_share(wo.z)), uniform, cltc);
         Sample { wi, event: Event::reflected(!both_above(wo, wi)) }
+    }
+
+    #[inline(always)]
+    fn delta(&self, _wo: Vec3<R>, _prepared: &Self::Prepared, _sample: &Sample<R>) -> Value<R> {
+        Value::zero()
     }
 
     #[inline(always)]
@@ -231,14 +244,28 @@ impl<R: Real> Lobe<R> for Eon<R> {
 
     #[inline(always)]
     fn domain(&self) -> R::Mask {
-        self.albedo.within(0.0, 1.0) & self.roughness.ge(R::ZERO) & self.roughness.le(R::ONE)
+        self.in_domain()
     }
 
     /// The fit bounds energy to 2e-3 only.
     #[inline(always)]
-    fn properties(&self) -> Properties {
-        let excess = if self.directional == Directional::Fitted { 2e-3 } else { 0.0 };
-        Properties { excess, ..Properties::LAWFUL }
+    fn properties(&self) -> Properties<R> {
+        let analytic = self.directional == EonAlbedo::Analytic;
+        let Rgb { r, g, b } = self.albedo;
+        let white = (r.same(R::ONE) & g.same(R::ONE) & b.same(R::ONE)).all();
+        let known = analytic && (white || self.roughness.same(R::ZERO).all());
+        Properties {
+            excess: if analytic { 0.0 } else { 2e-3 },
+            albedo: known.then_some(self.albedo),
+            // The closed form holds for unit directions, and those of f32 are unit to its precision only.
+            albedo_error: 1e-7,
+            ..Properties::LAWFUL
+        }
+    }
+
+    #[inline(always)]
+    fn largest_weight(&self, _wo: Vec3<R>) -> R {
+        R::lit(LARGEST_WEIGHT)
     }
 }
 
@@ -246,11 +273,11 @@ impl<R: Real> Lobe<R> for Eon<R> {
 mod tests {
     use super::*;
     use crate::lobe::Lambert;
-    use crate::testing::{Random, close};
+    use crate::testing::{Bare, Random, close};
 
-    const BOTH: [Directional; 2] = [Directional::Exact, Directional::Fitted];
+    const BOTH: [EonAlbedo; 2] = [EonAlbedo::Analytic, EonAlbedo::Fitted];
 
-    fn white<R: Real>(roughness: R, directional: Directional) -> Eon<R> {
+    fn white<R: Real>(roughness: R, directional: EonAlbedo) -> Eon<R> {
         Eon { directional, ..Eon::new(Rgb::splat(R::ONE), roughness) }
     }
 
@@ -266,7 +293,7 @@ mod tests {
             let (eon, lambert) = (Eon { directional, ..Eon::new(colour, 0.0) }, Lambert::new(colour));
             for _ in 0..1000 {
                 let (wo, wi) = (double(random.above()), double(random.above()));
-                let (a, b) = (eon.eval(wo, wi), lambert.eval(wo, wi));
+                let (a, b) = (eon.value(wo, wi), lambert.value(wo, wi));
                 assert!(close(a.f_cos.g, b.f_cos.g, 1e-6) && close(a.pdf, b.pdf, 1e-6), "{a:?} {b:?}");
             }
         }
@@ -275,7 +302,7 @@ mod tests {
     #[test]
     fn a_white_surface_returns_all_light_exactly_or_to_two_per_mille() {
         // Midpoints of the disk: ∫ f cos dω = ∫ f dx dy.
-        for (directional, tolerance) in [(Directional::Exact, 1e-4), (Directional::Fitted, 2e-3)] {
+        for (directional, tolerance) in [(EonAlbedo::Analytic, 1e-4), (EonAlbedo::Fitted, 2e-3)] {
             for roughness in [0.25_f64, 0.5, 1.0] {
                 for cos in [1.0, 0.7, 0.3, 0.1_f64] {
                     let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
@@ -286,7 +313,7 @@ mod tests {
                         for column in 0..columns {
                             let (sin, c) = ((f64::from(column) + 0.5) / f64::from(columns) * TAU).sin_cos();
                             let s = (1.0 - z * z).sqrt();
-                            sum += eon.eval(wo, Vec3::new(s * c, s * sin, z)).f_cos.r;
+                            sum += eon.value(wo, Vec3::new(s * c, s * sin, z)).f_cos.r;
                         }
                     }
                     let albedo = sum * TAU / f64::from(rows) / f64::from(columns);
@@ -304,7 +331,7 @@ mod tests {
             let eon = Eon { directional, ..Eon::new(Rgb::new(0.8_f32, 0.5, 0.2), 0.7) };
             for _ in 0..1000 {
                 let (a, b) = (random.above(), random.above());
-                let (there, back) = (eon.eval(a, b).f_cos.g * a.z, eon.eval(b, a).f_cos.g * b.z);
+                let (there, back) = (eon.value(a, b).f_cos.g * a.z, eon.value(b, a).f_cos.g * b.z);
                 assert!((there - back).abs() <= 1e-6 * there, "{a:?} {b:?}: {there} and {back}");
             }
         }
@@ -312,9 +339,9 @@ mod tests {
 
     #[test]
     fn a_rough_surface_shines_back_to_where_the_light_comes_from() {
-        let eon = white(1.0_f64, Directional::Exact);
+        let eon = white(1.0_f64, EonAlbedo::Analytic);
         let (wo, away) = (Vec3::new(0.8, 0.0, 0.6), Vec3::new(-0.8, 0.0, 0.6));
-        assert!(eon.eval(wo, wo).f_cos.r > 2.5 * eon.eval(wo, away).f_cos.r);
+        assert!(eon.value(wo, wo).f_cos.r > 2.5 * eon.value(wo, away).f_cos.r);
     }
 
     #[test]
@@ -330,7 +357,7 @@ mod tests {
                 };
                 let mut other = Random(round);
                 let (wo, wi) = (grazing(other.above()), grazing(other.above()));
-                let value = eon.eval(wo, wi);
+                let value = eon.value(wo, wi);
                 largest = largest.max(value.f_cos.r / value.pdf);
             }
         }

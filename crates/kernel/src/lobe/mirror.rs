@@ -3,16 +3,20 @@
 //! f = R δ(ω_i − mirrored ω_o)/|cosθ_i|; with the cosine of the scattering equation the weight is R. The lecture's mirror
 //! omits the 1/|cosθ|. Reciprocal; conserves energy for R ≤ 1. Purely discrete: `eval` is 0, 0.
 
-use super::{Event, Lobe, Sample, Value};
+use super::{Event, Lobe, Properties, Sample, Transport, Value};
+use crate::energy::AlbedoCurve;
+use crate::model::{Parameters, REFLECTANCE};
 use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
 use crate::vec3::Vec3;
 
-/// A mirror of specular reflectance R, each channel in [0, 1]. Reflects on the side of the normal only.
-#[derive(Clone, Copy, Debug)]
-pub struct Mirror<R> {
-    /// The reflected part of the light.
-    pub reflectance: Rgb<R>,
+crate::model! {
+    /// A perfect mirror of one reflectance at every angle. Reflects on the side of the normal only.
+    pub struct Mirror<R> = "mirror" {
+        /// The reflected part of the light, R.
+        reflectance: Rgb<R> = 1.0 in REFLECTANCE,
+    }
+    coat |mirror| Some(AlbedoCurve::constant(mirror.reflectance));
 }
 
 impl<R> Mirror<R> {
@@ -23,22 +27,24 @@ impl<R> Mirror<R> {
 }
 
 impl<R: Real> Lobe<R> for Mirror<R> {
+    type Prepared = ();
+
     #[inline(always)]
-    fn eval(&self, _wo: Vec3<R>, _wi: Vec3<R>) -> Value<R> {
+    fn prepare(&self, _wo: Vec3<R>, _transport: Transport) {}
+
+    #[inline(always)]
+    fn eval(&self, _wo: Vec3<R>, _prepared: &(), _wi: Vec3<R>) -> Value<R> {
         Value::zero()
     }
 
     #[inline(always)]
-    fn sample(&self, wo: Vec3<R>, _u: [R; 3]) -> Sample<R> {
-        // 2n(n·wo) − wo with n = (0, 0, 1).
-        let wi = Vec3::new(-wo.x, -wo.y, wo.z);
-        let event = Event { discrete: R::Mask::splat(true), ..Event::reflected(!wo.z.gt(R::ZERO)) };
-        Sample { wi, event }
+    fn sample(&self, wo: Vec3<R>, _prepared: &(), _u: [R; 3]) -> Sample<R> {
+        mirrored(wo)
     }
 
     #[inline(always)]
-    fn discrete(&self, wo: Vec3<R>, event: &Event<R>) -> Value<R> {
-        Value { f_cos: self.reflectance, pdf: R::ONE }.or_zero(event.discrete & !event.failed & wo.z.gt(R::ZERO))
+    fn delta(&self, wo: Vec3<R>, _prepared: &(), sample: &Sample<R>) -> Value<R> {
+        Value { f_cos: self.reflectance, pdf: R::ONE }.or_zero(is_mirrored(wo, sample))
     }
 
     #[inline(always)]
@@ -48,14 +54,37 @@ impl<R: Real> Lobe<R> for Mirror<R> {
 
     #[inline(always)]
     fn domain(&self) -> R::Mask {
-        self.reflectance.within(0.0, 1.0)
+        self.in_domain()
     }
+
+    #[inline(always)]
+    fn properties(&self) -> Properties<R> {
+        Properties { all_delta: true, albedo: Some(self.reflectance), ..Properties::LAWFUL }
+    }
+
+    #[inline(always)]
+    fn largest_weight(&self, _wo: Vec3<R>) -> R {
+        self.reflectance.largest()
+    }
+}
+
+/// The one event of a smooth reflector: 2n(n·wo) − wo with n = (0, 0, 1).
+#[inline(always)]
+pub(super) fn mirrored<R: Real>(wo: Vec3<R>) -> Sample<R> {
+    let event = Event { is_delta: R::Mask::splat(true), ..Event::reflected(!wo.z.gt(R::ZERO)) };
+    Sample { wi: Vec3::new(-wo.x, -wo.y, wo.z), event }
+}
+
+/// Whether a sample is that event.
+#[inline(always)]
+pub(super) fn is_mirrored<R: Real>(wo: Vec3<R>, sample: &Sample<R>) -> R::Mask {
+    sample.event.is_delta & !sample.event.failed & wo.z.gt(R::ZERO)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::Random;
+    use crate::testing::{Bare, Random};
 
     #[test]
     fn light_leaves_a_mirror_along_2n_times_n_dot_w_minus_w() {
@@ -63,11 +92,11 @@ mod tests {
         let (mirror, n) = (Mirror::new(Rgb::new(0.9_f32, 0.5, 0.1)), Vec3::unit_z());
         for _ in 0..100 {
             let w = random.above();
-            let sample = mirror.sample(w, [0.0; 3]);
+            let sample = mirror.draw(w, [0.0; 3]);
             assert_eq!(sample.wi, n * (2.0 * n.dot(w)) - w);
-            let worth = mirror.discrete(w, &sample.event);
+            let worth = mirror.delta_of(w, &sample);
             assert_eq!((worth.f_cos, worth.pdf), (mirror.reflectance, 1.0));
-            assert_eq!(mirror.eval(w, sample.wi).pdf, 0.0);
+            assert_eq!(mirror.value(w, sample.wi).pdf, 0.0);
         }
     }
 
@@ -75,8 +104,8 @@ mod tests {
     fn from_below_a_mirror_is_black() {
         let mirror = Mirror::new(Rgb::splat(1.0_f32));
         let below = Vec3::new(0.6, 0.0, -0.8);
-        let sample = mirror.sample(below, [0.0; 3]);
+        let sample = mirror.draw(below, [0.0; 3]);
         assert!(sample.event.failed);
-        assert_eq!(mirror.discrete(below, &sample.event).pdf, 0.0);
+        assert_eq!(mirror.delta_of(below, &sample).pdf, 0.0);
     }
 }

@@ -18,23 +18,37 @@
 //! Cost of a value with GGX: ten divisions and three roots.
 
 use super::dielectric::relative_index;
-use super::{Event, Lobe, Prepared, Sample, Value};
+use super::{Event, Lobe, Properties, Sample, Transport, Value};
 use crate::frame::turned;
-use crate::fresnel::{index_in_domain, interface, refracted_cosine};
+use crate::fresnel::{interface, refracted_cosine};
 use crate::microfacet::{Masking, Microfacets, Reach, pdf_visible_reflected, reflect, vis_cos_i};
-use crate::real::Real;
+use crate::model::{INDEX, Parameters};
+use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
 use crate::vec3::Vec3;
 
-/// A rough interface of widths α in [1e-8, 1]. The normal points away from the inside.
+crate::model! {
+    /// A rough interface: ground glass, a rippled lake. The normal points away from the inside.
+    pub struct RoughDielectric<R> = "dielectric" with ("roughness" | "alpha" | "alpha_x" | "alpha_y") {
+        /// The distribution of microfacet normals.
+        microfacets: Microfacets<R>,
+        /// How masking and shadowing of reflection go together.
+        masking: Masking = HeightCorrelated,
+        /// Index of the inside over that of the outside.
+        eta("ior"): R = 1.5 in INDEX,
+    }
+}
+
+/// What depends on wo alone.
 #[derive(Clone, Copy, Debug)]
-pub struct RoughDielectric<R> {
-    /// The distribution of microfacet normals.
-    pub microfacets: Microfacets<R>,
-    /// How masking and shadowing of reflection go together.
-    pub masking: Masking,
-    /// Index of the inside over that of the outside, in [0.01, 100].
-    pub eta: R,
+pub struct Prepared<R> {
+    /// s(wo).
+    s_o: R,
+    /// All visible normals.
+    reach: Reach<R>,
+    /// η seen from wo.
+    eta: R,
+    transport: Transport,
 }
 
 /// How near to 1 an index must be for the interface to count as none.
@@ -68,18 +82,18 @@ impl<R: Real> RoughDielectric<R> {
 }
 
 impl<R: Real> Lobe<R> for RoughDielectric<R> {
-    /// s(wo), the reach of visible normals, and η seen from wo.
+    type Prepared = Prepared<R>;
+
     #[inline(always)]
-    fn prepare(&self, wo: Vec3<R>) -> Prepared<R> {
+    fn prepare(&self, wo: Vec3<R>, transport: Transport) -> Prepared<R> {
         let s_o = self.microfacets.smith_length(wo);
-        let Reach { depth, inverse } = Reach::whole(turned(wo, wo), s_o);
-        Prepared([s_o, depth, inverse, relative_index(self.eta, wo), R::ZERO])
+        let reach = Reach::whole(turned(wo, wo), s_o);
+        Prepared { s_o, reach, eta: relative_index(self.eta, wo), transport }
     }
 
     #[inline]
-    fn eval_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
-        let Prepared([s_o, depth, inverse, eta, _]) = *prepared;
-        let reach = Reach { depth, inverse };
+    fn eval(&self, wo: Vec3<R>, prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
+        let Prepared { s_o, reach, eta, transport } = *prepared;
         let (wi, wo) = (turned(wo, wi), turned(wo, wo));
         let through = wi.z.lt(R::ZERO);
         let (c_o, c_i) = (wo.z, wi.z.abs());
@@ -117,13 +131,16 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
         let ok = c_o.gt(R::ZERO) & c_i.gt(R::ZERO) & !self.is_nothing();
         let f_cos = Rgb::select(through, refracted.f_cos, reflected.f_cos);
         let pdf = R::select(through, refracted.pdf, reflected.pdf);
-        Value { f_cos, pdf }.or_zero(ok & (faces | !through))
+        let value = Value { f_cos, pdf }.or_zero(ok & (faces | !through));
+        match transport {
+            Transport::Radiance => value,
+            Transport::Importance => Value { f_cos: value.f_cos * R::select(through, eta * eta, R::ONE), ..value },
+        }
     }
 
     #[inline]
-    fn sample_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
-        let Prepared([s_o, depth, inverse, eta, _]) = *prepared;
-        let reach = Reach { depth, inverse };
+    fn sample(&self, wo: Vec3<R>, prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
+        let Prepared { s_o, reach, eta, .. } = *prepared;
         let up = turned(wo, wo);
         let m = self.microfacets.sample_visible(up, s_o, reach, [u[1], u[2]]).normalize_or(Vec3::unit_z());
         let cos_m = up.dot(m).max(R::ZERO).min(R::ONE);
@@ -145,16 +162,16 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
             event: Event {
                 lobe: R::int(0),
                 transmitted: nothing | !reflects,
-                discrete: nothing,
+                is_delta: nothing,
                 failed: no_side | (!nothing & !right_side),
             },
         }
     }
 
     #[inline]
-    fn discrete(&self, _wo: Vec3<R>, event: &Event<R>) -> Value<R> {
-        // No interface: no compression of radiance either.
-        Value { f_cos: Rgb::splat(R::ONE), pdf: R::ONE }.or_zero(event.discrete & !event.failed)
+    fn delta(&self, _wo: Vec3<R>, _prepared: &Prepared<R>, sample: &Sample<R>) -> Value<R> {
+        // No interface: radiance is not scaled either.
+        Value { f_cos: Rgb::splat(R::ONE), pdf: R::ONE }.or_zero(sample.event.is_delta & !sample.event.failed)
     }
 
     #[inline(always)]
@@ -164,11 +181,21 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
 
     #[inline(always)]
     fn domain(&self) -> R::Mask {
-        self.microfacets.domain() & index_in_domain(self.eta)
+        self.in_domain()
     }
 
     #[inline(always)]
-    fn compression(&self, wo: Vec3<R>) -> R {
+    fn properties(&self) -> Properties<R> {
+        Properties { transmits: true, symmetric: false, all_delta: self.is_nothing().all(), ..Properties::LAWFUL }
+    }
+
+    #[inline(always)]
+    fn largest_weight(&self, _wo: Vec3<R>) -> R {
+        R::ONE
+    }
+
+    #[inline(always)]
+    fn radiance_scale(&self, wo: Vec3<R>) -> R {
         R::select(self.is_nothing(), R::ONE, relative_index(self.eta, wo).sqr())
     }
 }
@@ -177,7 +204,7 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
 mod tests {
     use super::*;
     use crate::microfacet::Ggx;
-    use crate::testing::Random;
+    use crate::testing::{Bare, Random};
 
     fn glass(alpha: f32, eta: f32) -> RoughDielectric<f32> {
         RoughDielectric::new(Ggx { alpha_x: alpha, alpha_y: 0.5 * alpha }, eta)
@@ -192,7 +219,7 @@ mod tests {
         for _ in 0..10_000 {
             let (a, b) = (direction(), direction());
             // f(wo, wi) η_i² = f(wi, wo) η_o²
-            let (there, back) = (glass.eval(a, b).f_cos.g / b.z.abs(), glass.eval(b, a).f_cos.g / a.z.abs());
+            let (there, back) = (glass.value(a, b).f_cos.g / b.z.abs(), glass.value(b, a).f_cos.g / a.z.abs());
             let square = |w: Vec3<f64>| if w.z > 0.0 { 1.0 } else { 2.25 };
             let (there, back) = (there * square(b), back * square(a));
             assert!((there - back).abs() <= 1e-10 * there.max(1e-6), "{a:?} {b:?}: {there} and {back}");
@@ -208,12 +235,12 @@ mod tests {
             let glass = glass(alpha, eta);
             for _ in 0..2000 {
                 let wo = random.direction();
-                let sample = glass.sample(wo, [random.unit(), random.unit(), random.unit()]);
+                let sample = glass.draw(wo, [random.unit(), random.unit(), random.unit()]);
                 if sample.event.failed {
                     continue;
                 }
-                let value = glass.eval(wo, sample.wi);
-                let energy = value.f_cos.r * if sample.event.transmitted { glass.compression(wo) } else { 1.0 };
+                let value = glass.value(wo, sample.wi);
+                let energy = value.f_cos.r * if sample.event.transmitted { glass.radiance_scale(wo) } else { 1.0 };
                 assert!(value.pdf > 0.0 && energy <= value.pdf * (1.0 + 1e-5), "{wo:?} {sample:?} {value:?}");
             }
         }
@@ -223,9 +250,9 @@ mod tests {
     fn an_interface_between_equal_indices_is_none() {
         let nothing = glass(0.5, 1.000_000_1);
         let wo = Vec3::new(0.6, 0.0, -0.8);
-        let sample = nothing.sample(wo, [0.3, 0.5, 0.5]);
-        assert!(sample.event.discrete && sample.event.transmitted && sample.wi == -wo);
-        assert_eq!(nothing.discrete(wo, &sample.event).f_cos.b, 1.0);
-        assert_eq!(nothing.eval(wo, sample.wi).pdf, 0.0);
+        let sample = nothing.draw(wo, [0.3, 0.5, 0.5]);
+        assert!(sample.event.is_delta && sample.event.transmitted && sample.wi == -wo);
+        assert_eq!(nothing.delta_of(wo, &sample).f_cos.b, 1.0);
+        assert_eq!(nothing.value(wo, sample.wi).pdf, 0.0);
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Seen from below, wo and wi are mirrored in the surface, and so is what is sampled. Reciprocity and energy are the lobe's.
 
-use super::{Event, Lobe, Prepared, Properties, Sample, Value};
+use super::{Lobe, Properties, Sample, Transport, Value};
 use crate::frame::turned;
 use crate::real::Real;
 use crate::rgb::Rgb;
@@ -13,25 +13,29 @@ use crate::vec3::Vec3;
 pub struct TwoSided<L>(pub L);
 
 impl<R: Real, L: Lobe<R>> Lobe<R> for TwoSided<L> {
+    type Prepared = L::Prepared;
+    const LOBES: u32 = L::LOBES;
+
     #[inline(always)]
-    fn prepare(&self, wo: Vec3<R>) -> Prepared<R> {
-        self.0.prepare(turned(wo, wo))
+    fn prepare(&self, wo: Vec3<R>, transport: Transport) -> Self::Prepared {
+        self.0.prepare(turned(wo, wo), transport)
     }
 
     #[inline(always)]
-    fn eval_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
-        self.0.eval_prepared(turned(wo, wo), prepared, turned(wo, wi))
+    fn eval(&self, wo: Vec3<R>, prepared: &Self::Prepared, wi: Vec3<R>) -> Value<R> {
+        self.0.eval(turned(wo, wo), prepared, turned(wo, wi))
     }
 
     #[inline(always)]
-    fn sample_prepared(&self, wo: Vec3<R>, prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
-        let sample = self.0.sample_prepared(turned(wo, wo), prepared, u);
+    fn sample(&self, wo: Vec3<R>, prepared: &Self::Prepared, u: [R; 3]) -> Sample<R> {
+        let sample = self.0.sample(turned(wo, wo), prepared, u);
         Sample { wi: turned(wo, sample.wi), ..sample }
     }
 
     #[inline(always)]
-    fn discrete(&self, wo: Vec3<R>, event: &Event<R>) -> Value<R> {
-        self.0.discrete(turned(wo, wo), event)
+    fn delta(&self, wo: Vec3<R>, prepared: &Self::Prepared, sample: &Sample<R>) -> Value<R> {
+        let sample = Sample { wi: turned(wo, sample.wi), ..*sample };
+        self.0.delta(turned(wo, wo), prepared, &sample)
     }
 
     #[inline(always)]
@@ -45,13 +49,18 @@ impl<R: Real, L: Lobe<R>> Lobe<R> for TwoSided<L> {
     }
 
     #[inline(always)]
-    fn compression(&self, wo: Vec3<R>) -> R {
-        self.0.compression(turned(wo, wo))
+    fn radiance_scale(&self, wo: Vec3<R>) -> R {
+        self.0.radiance_scale(turned(wo, wo))
     }
 
     #[inline(always)]
-    fn properties(&self) -> Properties {
-        Lobe::<R>::properties(&self.0)
+    fn largest_weight(&self, wo: Vec3<R>) -> R {
+        self.0.largest_weight(turned(wo, wo))
+    }
+
+    #[inline(always)]
+    fn properties(&self) -> Properties<R> {
+        self.0.properties()
     }
 }
 
@@ -59,7 +68,7 @@ impl<R: Real, L: Lobe<R>> Lobe<R> for TwoSided<L> {
 mod tests {
     use super::*;
     use crate::lobe::{Lambert, Mirror};
-    use crate::testing::Random;
+    use crate::testing::{Bare, Random};
 
     #[test]
     fn from_behind_paper_looks_as_from_the_front() {
@@ -67,9 +76,9 @@ mod tests {
         let paper = TwoSided(Lambert::new(Rgb::new(0.8_f32, 0.5, 0.2)));
         for _ in 0..1000 {
             let (wo, wi) = (random.direction(), random.direction());
-            let (front, back) = (paper.eval(wo, wi), paper.eval(-wo, -wi));
+            let (front, back) = (paper.value(wo, wi), paper.value(-wo, -wi));
             assert_eq!((front.f_cos, front.pdf), (back.f_cos, back.pdf));
-            let sample = paper.sample(wo, [random.unit(), random.unit(), random.unit()]);
+            let sample = paper.draw(wo, [random.unit(), random.unit(), random.unit()]);
             assert!(sample.event.failed || sample.wi.z * wo.z > 0.0, "{wo:?} {sample:?}");
         }
     }
@@ -78,8 +87,8 @@ mod tests {
     fn a_two_sided_mirror_reflects_from_below() {
         let mirror = TwoSided(Mirror::new(Rgb::splat(0.5_f32)));
         let wo = Vec3::new(0.6, 0.0, -0.8);
-        let sample = mirror.sample(wo, [0.5; 3]);
+        let sample = mirror.draw(wo, [0.5; 3]);
         assert_eq!(sample.wi, Vec3::new(-0.6, 0.0, -0.8));
-        assert_eq!(mirror.discrete(wo, &sample.event).f_cos.r, 0.5);
+        assert_eq!(mirror.delta_of(wo, &sample).f_cos.r, 0.5);
     }
 }

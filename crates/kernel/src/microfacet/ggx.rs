@@ -15,13 +15,14 @@
 //! Nothing is formed by subtraction: D comes from the unnormalised half vector, which stays exact near the mirror
 //! direction. Cost: D one division, s one root, its reach two divisions and a root, a visible normal one root.
 
-use super::{Reach, lengthened, widths_in_domain};
+use super::{Reach, lengthened};
 use crate::math::sin_cos_turns;
 use crate::real::Real;
+use crate::surface::Alpha;
 use crate::vec3::Vec3;
 
 /// A GGX surface of widths alpha_x and alpha_y, each in [1e-8, 1].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx<R> {
     /// Width along the tangent, α_u.
     pub alpha_x: R,
@@ -30,6 +31,13 @@ pub struct Ggx<R> {
 }
 
 impl<R: Real> Ggx<R> {
+    /// The same along tangent and bitangent, by alpha or by a user's roughness.
+    #[inline(always)]
+    pub fn isotropic(alpha: impl Into<Alpha<R>>) -> Self {
+        let Alpha(alpha) = alpha.into();
+        Self { alpha_x: alpha, alpha_y: alpha }
+    }
+
     /// D of the normal along h (any length, h.z ≥ 0), with |h|² given \[1/sr\].
     #[inline(always)]
     pub fn d(&self, h: Vec3<R>, h_length2: R) -> R {
@@ -89,12 +97,6 @@ impl<R: Real> Ggx<R> {
             (s_o + wo.z - depth).max(R::lit(1e-18)),
         );
         Vec3::new(self.alpha_x * m.x, self.alpha_y * m.y, m.z)
-    }
-
-    /// Whether both widths lie in [1e-8, 1].
-    #[inline(always)]
-    pub fn domain(&self) -> R::Mask {
-        widths_in_domain(self.alpha_x, self.alpha_y)
     }
 }
 

@@ -1,0 +1,266 @@
+//! `Parameters` and `Model`: a scattering model is declared once, and all else about its parameters follows.
+//!
+//! - A [`Quantity`] is a domain with a meaning: [`REFLECTANCE`], [`ALPHA`].
+//! - A [`Parameter`] is a quantity with a key, a default and a sentence: `base_color`, a reflectance, 0.8.
+//! - A [`choice!`](crate::choice) is one of a few words, each of which runs code of its own.
+//! - A [`group!`](crate::group) is a set of parameters that models share; [`one_of!`](crate::one_of) one that can be given in
+//!   several ways (roughness, or alpha, or alpha_x with alpha_y).
+//! - A [`model!`](crate::model!) is a struct of these with a name, its `type` in material files.
+//!
+//! From the declaration come the struct, generic over [`Real`]; its twins in `f64` and in eight lanes ([`Parameters::to`],
+//! [`Parameters::gather`]); its keys in files ([`Parameters::read`], from any [`Source`]) and their table in the documentation
+//! ([`Parameters::ENTRIES`]); its domain; which parameters take a texture (every number and colour); and what instruments sweep, nudge
+//! and plot ([`Parameters::map`]). Combinations of lobes are made of parameters too.
+//!
+//! ```
+//! use gonio_kernel::model::{Parameters, REFLECTANCE, ROUGHNESS};
+//! use gonio_kernel::{Rgb, model};
+//!
+//! model! {
+//!     /// A cloth.
+//!     pub struct Velvet<R> = "velvet" {
+//!         /// Part of the light that is scattered.
+//!         base_color: Rgb<R> = 0.8 in REFLECTANCE,
+//!         /// 0.1 is satin, 0.5 felt.
+//!         roughness: R = 0.3 in ROUGHNESS,
+//!     }
+//! }
+//!
+//! let red = Velvet { base_color: Rgb::new(0.8_f32, 0.1, 0.1), roughness: 0.3 };
+//! assert!(Parameters::in_domain(&red));
+//! assert_eq!(red.to::<f64>().roughness, f64::from(0.3_f32));
+//! assert!(!Parameters::in_domain(&Velvet { roughness: 1.5, ..red }));
+//! ```
+
+mod macros;
+mod quantity;
+mod source;
+
+#[doc(hidden)]
+pub use macros::__ways;
+pub use quantity::{
+    ALPHA, COATING_INDEX, ETA, EXPONENT, EXTINCTION, INDEX, MICROFACET_ROUGHNESS, Quantity, REFLECTANCE, ROUGHNESS,
+    Role, WEIGHT,
+};
+pub use source::{Problem, Source};
+
+use crate::energy::AlbedoCurve;
+#[cfg(feature = "wide")]
+use crate::lanes::F32x8;
+use crate::real::Real;
+
+/// A number or a colour of a model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Parameter {
+    /// Its key in material files.
+    pub key: &'static str,
+    /// Three numbers, red, green and blue; one number stands for three equal ones.
+    pub is_color: bool,
+    /// Its domain and meaning.
+    pub quantity: Quantity,
+    /// What it is if it is not given; none if it must be.
+    pub default: Option<f64>,
+    /// What it says, in one sentence.
+    pub doc: &'static str,
+}
+
+impl Parameter {
+    #[doc(hidden)]
+    pub const fn declared(
+        key: &'static str,
+        is_color: bool,
+        quantity: Quantity,
+        default: Option<f64>,
+        doc: &'static str,
+    ) -> Self {
+        Self { key, is_color, quantity, default, doc }
+    }
+}
+
+/// One of a few words.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Words {
+    /// Its key in material files.
+    pub key: &'static str,
+    /// Each choice: its word, and other spellings, which are read with a warning.
+    pub words: &'static [&'static [&'static str]],
+    /// Which one it is if it is not given; none if it must be.
+    pub default: Option<usize>,
+    /// What it decides, in one sentence.
+    pub doc: &'static str,
+}
+
+impl Words {
+    #[doc(hidden)]
+    pub const fn declared(
+        key: &'static str,
+        words: &'static [&'static [&'static str]],
+        default: Option<usize>,
+        doc: &'static str,
+    ) -> Self {
+        Self { key, words, default, doc }
+    }
+    /// The word of each choice.
+    pub fn each(&self) -> impl Iterator<Item = &'static str> {
+        self.words.iter().filter_map(|spellings| spellings.first().copied())
+    }
+    /// Which choice a word is, in any spelling.
+    pub fn find(&self, word: &str) -> Option<usize> {
+        self.words.iter().position(|spellings| spellings.contains(&word))
+    }
+}
+
+/// A line of a model's table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Entry {
+    /// A number or a colour: takes a texture.
+    Parameter(Parameter),
+    /// One of a few words: takes none.
+    Choice(Words),
+    /// The lines of a group.
+    Group(&'static [Entry]),
+    /// One of several sets of parameters; a set without any is the default.
+    OneOf {
+        /// What they say.
+        doc: &'static str,
+        /// The sets.
+        ways: &'static [&'static [Entry]],
+    },
+}
+
+/// Calls `visit` with every key of a table, in order; a key that stands in several ways comes several times.
+pub fn each_key(entries: &'static [Entry], visit: &mut dyn FnMut(&'static str)) {
+    for entry in entries {
+        match entry {
+            Entry::Parameter(p) => visit(p.key),
+            Entry::Choice(words) => visit(words.key),
+            Entry::Group(entries) => each_key(entries, visit),
+            Entry::OneOf { ways, .. } => ways.iter().for_each(|way| each_key(way, visit)),
+        }
+    }
+}
+
+/// A model's name, its sentence and its table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ModelInfo {
+    /// Its `type` in material files.
+    pub name: &'static str,
+    /// What it models.
+    pub doc: &'static str,
+    /// Its parameters.
+    pub entries: &'static [Entry],
+}
+
+impl ModelInfo {
+    #[doc(hidden)]
+    pub const fn declared(name: &'static str, doc: &'static str, entries: &'static [Entry]) -> Self {
+        Self { name, doc, entries }
+    }
+}
+
+/// Anything made of parameters. [`Parameters::map`] is the one walk over all numbers.
+pub trait Parameters: Copy {
+    /// The arithmetic.
+    type Real: Real;
+    /// The same in another arithmetic.
+    type Of<S: Real>: Parameters<Real = S>;
+    /// Keys, domains, defaults, meanings; empty for combinations of models.
+    const ENTRIES: &'static [Entry];
+
+    /// Each number replaced by f(its parameter, its channel, the number).
+    fn map<S: Real>(&self, f: &mut impl FnMut(&'static Parameter, usize, Self::Real) -> S) -> Self::Of<S>;
+    /// Eight side by side that run the same code ([`Parameters::same_code`]); a lane that does not has the first one's numbers.
+    #[cfg(feature = "wide")]
+    fn gather(lanes: [&Self::Of<f32>; 8]) -> Self::Of<F32x8>;
+    /// Whether both run the same code: equal choices, equal ways, equal models.
+    fn same_code(&self, other: &Self) -> bool;
+    /// Whether every number lies in its domain and every rule over several holds.
+    fn in_domain(&self) -> <Self::Real as Real>::Mask;
+    /// The directional albedo over the angle, erring upwards, of a lobe that can lie on top of others: they receive what is left
+    /// ([`crate::lobe::Layer`]). None for a lobe that nothing shines through.
+    #[inline(always)]
+    fn albedo_curve(&self) -> Option<AlbedoCurve<Self::Real>> {
+        None
+    }
+    /// Reads the parameters from a file or whatever else names them.
+    ///
+    /// # Errors
+    /// What the source says.
+    fn read<S: Source<Self::Real>>(source: &mut S) -> Result<Self, S::Error>;
+
+    /// The same in another arithmetic, each number rounded to it.
+    ///
+    /// ```
+    /// use gonio_kernel::{Rgb, lobe::Lambert, model::Parameters};
+    /// let double = Lambert::new(Rgb::splat(0.5_f32)).to::<f64>();
+    /// assert_eq!(double.base_color.g, 0.5);
+    /// ```
+    #[inline(always)]
+    fn to<S: Real>(&self) -> Self::Of<S>
+    where
+        Self: Parameters<Real = f32>,
+    {
+        self.map(&mut |_, _, x| S::lit(f64::from(x)))
+    }
+}
+
+/// A model, or an enum of models, that files can name.
+pub trait Model: Parameters {
+    /// Whether `type = name` with these keys is this model.
+    fn is_named(name: &str, has: &dyn Fn(&str) -> bool) -> bool;
+    /// Calls `visit` with each model's declaration.
+    fn each_model(visit: &mut dyn FnMut(&'static ModelInfo));
+}
+
+/// One of a few words, each of which runs code of its own.
+pub trait Choice: Copy + PartialEq + 'static {
+    /// The words in material files, in the order of [`Choice::ALL`], each with its other spellings behind it.
+    const WORDS: &'static [&'static [&'static str]];
+    /// All choices.
+    const ALL: &'static [Self];
+
+    /// Its word.
+    fn word(self) -> &'static str {
+        let mut known = Self::ALL.iter().zip(Self::WORDS);
+        known.find(|(choice, _)| **choice == self).and_then(|(_, words)| words.first().copied()).unwrap_or("")
+    }
+    /// The choice of that word, in any spelling.
+    fn named(word: &str) -> Option<Self> {
+        let known = Self::WORDS.iter().position(|words| words.contains(&word))?;
+        Self::ALL.get(known).copied()
+    }
+}
+
+/// A number of a file, or its default.
+#[doc(hidden)]
+pub fn read_number<R: Real, S: Source<R>>(source: &mut S, p: &'static Parameter) -> Result<R, S::Error> {
+    match (source.number(p)?, p.default) {
+        (Some(x), _) => Ok(x),
+        (None, Some(default)) => Ok(R::lit(default)),
+        (None, None) => Err(source.refuse(Problem::Missing(p.key))),
+    }
+}
+
+/// A colour of a file, or its default, a grey.
+#[doc(hidden)]
+pub fn read_color<R: Real, S: Source<R>>(source: &mut S, p: &'static Parameter) -> Result<crate::Rgb<R>, S::Error> {
+    match (source.color(p)?, p.default) {
+        (Some(c), _) => Ok(c),
+        (None, Some(default)) => Ok(crate::Rgb::splat(R::lit(default))),
+        (None, None) => Err(source.refuse(Problem::Missing(p.key))),
+    }
+}
+
+/// A word of a file, or its default.
+#[doc(hidden)]
+pub fn read_word<C: Choice, R: Real, S: Source<R>>(source: &mut S, words: &'static Words) -> Result<C, S::Error> {
+    let which = source.word(words)?.or(words.default);
+    match which.and_then(|which| C::ALL.get(which)) {
+        Some(choice) => Ok(*choice),
+        None => Err(source.refuse(Problem::Missing(words.key))),
+    }
+}

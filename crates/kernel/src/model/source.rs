@@ -1,0 +1,71 @@
+//! `Source`: what parameters are read from. A scene file, a JSON document, or an instrument that goes through all choices.
+
+use super::{Entry, Parameter, Words, each_key};
+use crate::real::Real;
+use crate::rgb::Rgb;
+
+/// What is wrong with the parameters as a whole.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum Problem {
+    /// A parameter without a default is not given.
+    Missing(&'static str),
+    /// None of these ways is given, or several at once.
+    OneOf(&'static [&'static [Entry]]),
+    /// A rule over several parameters is broken; the sentence says which.
+    Rule(&'static str),
+    /// No model of that name; [`super::Model::each_model`] lists those that there are.
+    UnknownModel,
+}
+
+/// Named values. Whoever implements it decides what a value out of range is, and what its errors say.
+pub trait Source<R: Real> {
+    /// What is wrong, and where.
+    type Error;
+
+    /// The model's name: the value of `type`.
+    fn model(&self) -> &str;
+    /// Whether a key is there.
+    fn has(&self, key: &str) -> bool;
+    /// A number; none if it is not given.
+    ///
+    /// # Errors
+    /// It is not a number, or out of range.
+    fn number(&mut self, parameter: &'static Parameter) -> Result<Option<R>, Self::Error>;
+    /// A colour; none if it is not given.
+    ///
+    /// # Errors
+    /// It is not a colour, or out of range.
+    fn color(&mut self, parameter: &'static Parameter) -> Result<Option<Rgb<R>>, Self::Error>;
+    /// Which of a few words; none if it is not given.
+    ///
+    /// # Errors
+    /// It is none of them.
+    fn word(&mut self, words: &'static Words) -> Result<Option<usize>, Self::Error>;
+    /// The error for a problem with the parameters as a whole.
+    fn refuse(&mut self, problem: Problem) -> Self::Error;
+
+    /// Which of several ways is given: the one whose keys are all there, and of whose rivals none is.
+    ///
+    /// # Errors
+    /// None of them is, or several are.
+    fn way(&mut self, ways: &'static [&'static [Entry]]) -> Result<usize, Self::Error> {
+        let fits = |way: &&'static [Entry]| {
+            let mut all = true;
+            each_key(way, &mut |key| all &= self.has(key));
+            let mut strangers = false;
+            for other in ways {
+                each_key(other, &mut |key| {
+                    let mut own = false;
+                    each_key(way, &mut |mine| own |= mine == key);
+                    strangers |= self.has(key) && !own;
+                });
+            }
+            all && !strangers
+        };
+        match ways.iter().position(|way| fits(&way)) {
+            Some(way) => Ok(way),
+            None => Err(self.refuse(Problem::OneOf(ways))),
+        }
+    }
+}
