@@ -51,6 +51,7 @@
 //! ```
 
 mod any;
+mod coating;
 mod conductor;
 mod dielectric;
 pub mod eon;
@@ -65,6 +66,7 @@ mod two_sided;
 mod weighted;
 
 pub use any::AnyLobe;
+pub use coating::Coating;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use eon::{Eon, EonAlbedo};
@@ -139,8 +141,12 @@ pub struct Properties<R> {
     /// By how many units `f32` may differ from `f64` on the same numbers; a unit is the larger of eps·f and the largest change
     /// of f when one input moves by one unit in the last place. 8, unless a fitted function adds roundings of its own.
     pub units: f32,
+    /// Some of it is delta events.
+    pub has_delta: bool,
     /// All of it is delta events.
     pub all_delta: bool,
+    /// Turning both directions about the normal changes the value: the tangent matters.
+    pub anisotropic: bool,
     /// Scatters to the other side, and from there.
     pub transmits: bool,
     /// The sampler maps the unit square to directions one to one: then pdf · |∂ω/∂u| = 1.
@@ -160,7 +166,9 @@ impl<R> Properties<R> {
         conserving: true,
         excess: 0.0,
         units: 8.0,
+        has_delta: false,
         all_delta: false,
+        anisotropic: false,
         transmits: false,
         one_to_one: false,
         symmetric: true,
@@ -178,7 +186,9 @@ impl<R> Properties<R> {
             conserving: self.conserving && other.conserving,
             excess: self.excess.max(other.excess),
             units: self.units.max(other.units),
+            has_delta: self.has_delta || other.has_delta,
             all_delta: self.all_delta && other.all_delta,
+            anisotropic: self.anisotropic || other.anisotropic,
             transmits: self.transmits || other.transmits,
             one_to_one: false,
             symmetric: self.symmetric && other.symmetric,

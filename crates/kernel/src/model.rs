@@ -39,8 +39,8 @@ mod source;
 #[doc(hidden)]
 pub use macros::__ways;
 pub use quantity::{
-    ALPHA, COATING_INDEX, ETA, EXPONENT, EXTINCTION, INDEX, MICROFACET_ROUGHNESS, Quantity, REFLECTANCE, ROUGHNESS,
-    Role, WEIGHT,
+    ALPHA, COATING_ALPHA, COATING_INDEX, COATING_ROUGHNESS, ETA, EXPONENT, EXTINCTION, INDEX, MICROFACET_ROUGHNESS,
+    Quantity, REFLECTANCE, ROUGHNESS, Role, WEIGHT,
 };
 pub use source::{Problem, Source};
 

@@ -208,6 +208,7 @@ impl<R: Real> Lobe<R> for Conductor<R> {
         Properties {
             reciprocal,
             symmetric: reciprocal,
+            anisotropic: !isotropic,
             excess,
             units,
             // Beckmann's steep slopes are reached from two places, and Kulla & Conty's lobe has a sampler of its own.

@@ -59,7 +59,7 @@ impl<R: Real> Lobe<R> for Mirror<R> {
 
     #[inline(always)]
     fn properties(&self) -> Properties<R> {
-        Properties { all_delta: true, albedo: Some(self.reflectance), ..Properties::LAWFUL }
+        Properties { has_delta: true, all_delta: true, albedo: Some(self.reflectance), ..Properties::LAWFUL }
     }
 
     #[inline(always)]

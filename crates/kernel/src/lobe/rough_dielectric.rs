@@ -186,7 +186,14 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
 
     #[inline(always)]
     fn properties(&self) -> Properties<R> {
-        Properties { transmits: true, symmetric: false, all_delta: self.is_nothing().all(), ..Properties::LAWFUL }
+        Properties {
+            transmits: true,
+            symmetric: false,
+            has_delta: self.is_nothing().any(),
+            all_delta: self.is_nothing().all(),
+            anisotropic: !self.microfacets.is_isotropic().all(),
+            ..Properties::LAWFUL
+        }
     }
 
     #[inline(always)]

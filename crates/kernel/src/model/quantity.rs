@@ -103,6 +103,10 @@ pub const EXPONENT: Quantity = Quantity::new(Role::Exponent, 0.0, 1e7).log_from(
 pub const INDEX: Quantity = Quantity::new(Role::Index, 0.01, 100.0).log_from(0.01).shown(0.4, 2.5, 1.5);
 /// The relative index of a coat, in \[1, 3\].
 pub const COATING_INDEX: Quantity = Quantity::new(Role::Index, 1.0, 3.0).shown(1.0, 2.5, 1.5);
+/// Alpha of a coat, in \[0, 1\]; 0 is smooth.
+pub const COATING_ALPHA: Quantity = Quantity::new(Role::Alpha, 0.0, 1.0).shown(1e-4, 1.0, 0.2);
+/// A user's roughness of a coat, in \[0, 1\]; 0 is smooth.
+pub const COATING_ROUGHNESS: Quantity = Quantity::new(Role::Roughness, 0.0, 1.0).shown(0.0, 1.0, 0.1);
 /// The real part of a conductor's index, in \[1e-4, 100\]. Without a real part everything is reflected: 1 − R = 4η/((η + 1)² + k²).
 pub const ETA: Quantity = Quantity::new(Role::Index, 1e-4, 100.0).log_from(1e-4).white(1e-4).shown(0.1, 10.0, 0.2);
 /// The imaginary part of a conductor's index, in \[0, 100\].
