@@ -21,9 +21,9 @@ mod lobes;
 mod scenes;
 
 use gonio_accel::{Intersect, Obvhs};
-use gonio_kernel::lobe::{Conductor, Dielectric, Eon, Lambert, Mirror, Phong, RoughDielectric};
-use gonio_kernel::{F32x8, for_each_lobe};
-use lobes::{Example, Lanes, Scalars, beckmann_normal, ggx_normal};
+use gonio_kernel::lobe::*;
+use gonio_kernel::{F32x8, Parameters, for_each_lobe};
+use lobes::{Lanes, Scalars, beckmann_normal, ggx_normal};
 use scenes::rays::{Answers, sets};
 use scenes::{Character, Random, Scene, room};
 use std::hint::black_box;
@@ -114,19 +114,21 @@ fn counted_by_the_gate(work: &mut dyn FnMut()) {
 }
 
 macro_rules! lobe_rows {
-    ($($lobe:ident),*) => {
+    ($($lobe:ident),* $(,)?) => {
         /// Value and density, value alone, and sampling of every lobe: 4096 directions.
         fn kernel(rows: &mut Rows) {
             let (one, eight) = (Scalars::new(), Lanes::new());
             $(
-                let scalar = black_box(<$lobe<f32>>::example());
-                let lanes = black_box(<$lobe<F32x8>>::example());
+                let scalar = black_box(<$lobe<f32>>::typical().expect("typical values"));
+                let lanes = black_box(scalar.to::<F32x8>());
                 rows.row(concat!(stringify!($lobe), "/eval/f32"), || one.eval(&scalar));
                 rows.row(concat!(stringify!($lobe), "/eval/F32x8"), || eight.eval(&lanes));
                 rows.row(concat!(stringify!($lobe), "/value/f32"), || one.value(&scalar));
                 rows.row(concat!(stringify!($lobe), "/value/F32x8"), || eight.value(&lanes));
                 rows.row(concat!(stringify!($lobe), "/sample/f32"), || one.sample(&scalar));
                 rows.row(concat!(stringify!($lobe), "/sample/F32x8"), || eight.sample(&lanes));
+                rows.row(concat!(stringify!($lobe), "/closure-sample/f32"), || one.closure_sample(&scalar));
+                rows.row(concat!(stringify!($lobe), "/closure-sample/F32x8"), || eight.closure_sample(&lanes));
             )*
             rows.row("visible-normal/beckmann/f32", || one.normals(beckmann_normal));
             rows.row("visible-normal/beckmann/F32x8", || eight.normals(beckmann_normal));

@@ -12,9 +12,9 @@ mod random;
 mod serve;
 
 use criterion::{Criterion, Throughput};
-use gonio_kernel::lobe::{Conductor, Dielectric, Eon, Lambert, Mirror, Phong, RoughDielectric};
-use gonio_kernel::{F32x8, Value, for_each_lobe};
-use lobes::{BATCH, Example, Lanes, Scalars, beckmann_normal, eval, ggx_normal};
+use gonio_kernel::lobe::*;
+use gonio_kernel::{F32x8, Parameters, for_each_lobe};
+use lobes::{BATCH, Lanes, Scalars, beckmann_normal, eval, ggx_normal};
 use random::Random;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -41,19 +41,22 @@ fn main() -> ExitCode {
 }
 
 macro_rules! lobe_rows {
-    ($($lobe:ident),*) => {
+    ($($lobe:ident),* $(,)?) => {
         fn rows(criterion: &mut Criterion) {
             let (one, eight) = (Scalars::new(), Lanes::new());
             $(
                 let mut group = criterion.benchmark_group(stringify!($lobe));
                 group.throughput(Throughput::Elements(BATCH as u64));
-                let (scalar, lanes) = (<$lobe<f32>>::example(), <$lobe<F32x8>>::example());
+                let scalar = <$lobe<f32>>::typical().expect("typical values");
+                let lanes = scalar.to::<F32x8>();
                 group.bench_function("eval/f32", |b| b.iter(|| one.eval(&scalar)));
                 group.bench_function("eval/F32x8", |b| b.iter(|| eight.eval(&lanes)));
                 group.bench_function("value/f32", |b| b.iter(|| one.value(&scalar)));
                 group.bench_function("value/F32x8", |b| b.iter(|| eight.value(&lanes)));
                 group.bench_function("sample/f32", |b| b.iter(|| one.sample(&scalar)));
                 group.bench_function("sample/F32x8", |b| b.iter(|| eight.sample(&lanes)));
+                group.bench_function("closure-sample/f32", |b| b.iter(|| one.closure_sample(&scalar)));
+                group.bench_function("closure-sample/F32x8", |b| b.iter(|| eight.closure_sample(&lanes)));
                 group.finish();
             )*
         }
@@ -76,7 +79,8 @@ fn visible_normal_rows(criterion: &mut Criterion) {
 /// Prints how much faster `Conductor::eval` is in eight lanes; fails below [`LEAST_RATIO`] or on a value that differs.
 fn ratio() -> ExitCode {
     let (one, eight) = (Scalars::new(), Lanes::new());
-    let (scalar, lanes) = (Conductor::<f32>::example(), Conductor::<F32x8>::example());
+    let scalar = Conductor::<f32>::typical().expect("typical values");
+    let lanes = scalar.to::<F32x8>();
     assert_same_values(&one, &scalar, &eight, &lanes);
 
     let nanoseconds = |run: &dyn Fn()| {

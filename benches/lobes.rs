@@ -1,63 +1,16 @@
-//! What the benchmarks of lobes share: a lobe of everyday parameters for each model, and batches of directions.
+//! What the benchmarks of lobes share: batches of directions, and the calls that are measured.
 //!
 //! Scalar code and lanes are called the way a caller meets them: through a function that is not inlined, on input that the
 //! optimiser cannot see through. Without that it would turn the scalar loop into a vector loop of its own, and compare lanes
 //! with lanes.
 
 use crate::Random;
-use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{Conductor, Dielectric, Eon, Lambert, Mirror, Phong, PhongNorm, RoughDielectric};
 use gonio_kernel::microfacet::{Beckmann, Ggx, Reach};
-use gonio_kernel::{F32x8, Lobe, Real, Rgb, Sample, Value, Vec3};
+use gonio_kernel::{BsdfSample, Closure, F32x8, Lobe, Real, Rgb, Sample, Transport, Value, Vec3};
 use std::hint::black_box;
 
 /// Directions per batch: with the results about 200 KB.
 pub(crate) const BATCH: usize = 4096;
-
-/// A lobe of everyday parameters.
-pub(crate) trait Example {
-    fn example() -> Self;
-}
-impl<R: Real> Example for Lambert<R> {
-    fn example() -> Self {
-        Self::new(Rgb::new(0.8, 0.5, 0.2).map(R::lit))
-    }
-}
-impl<R: Real> Example for Mirror<R> {
-    fn example() -> Self {
-        Self::new(Rgb::new(0.9, 0.8, 0.7).map(R::lit))
-    }
-}
-impl<R: Real> Example for Conductor<R> {
-    /// Copper at 630, 532 and 465 nm (Johnson & Christy 1972), so no channel can stand for another.
-    fn example() -> Self {
-        let eta = Rgb::new(0.22, 0.96, 1.17).map(R::lit);
-        let k = Rgb::new(3.68, 2.59, 2.46).map(R::lit);
-        Self::new(Ggx { alpha_x: R::lit(0.3), alpha_y: R::lit(0.2) }, Fresnel::Conductor { eta, k })
-    }
-}
-
-impl<R: Real> Example for Dielectric<R> {
-    fn example() -> Self {
-        Self::new(R::lit(1.5))
-    }
-}
-impl<R: Real> Example for RoughDielectric<R> {
-    fn example() -> Self {
-        Self::new(Ggx { alpha_x: R::lit(0.3), alpha_y: R::lit(0.2) }, R::lit(1.5))
-    }
-}
-impl<R: Real> Example for Phong<R> {
-    fn example() -> Self {
-        let (diffuse, glossy) = (Rgb::new(0.4, 0.3, 0.1).map(R::lit), Rgb::new(0.3, 0.3, 0.3).map(R::lit));
-        Self { diffuse, glossy, exponent: R::lit(30.0), norm: PhongNorm::Lecture }
-    }
-}
-impl<R: Real> Example for Eon<R> {
-    fn example() -> Self {
-        Self::new(Rgb::new(0.8, 0.5, 0.2).map(R::lit), R::lit(0.6))
-    }
-}
 
 /// A batch of input, one direction after the other or eight side by side.
 pub(crate) struct Batch<R> {
@@ -117,6 +70,13 @@ impl<R: Real> Batch<R> {
         }
     }
 
+    /// A direction with its value, guarded.
+    pub(crate) fn closure_sample(&self, lobe: &impl Lobe<R>) {
+        for (&wo, &u) in self.wo.iter().zip(&self.u) {
+            black_box(closure_sample(lobe, black_box(wo), black_box(u)));
+        }
+    }
+
     /// A direction.
     pub(crate) fn sample(&self, lobe: &impl Lobe<R>) {
         for (&wo, &u) in self.wo.iter().zip(&self.u) {
@@ -127,12 +87,12 @@ impl<R: Real> Batch<R> {
 
 #[inline(never)]
 pub(crate) fn eval<R: Real>(lobe: &impl Lobe<R>, wo: Vec3<R>, wi: Vec3<R>) -> Value<R> {
-    lobe.eval(wo, wi)
+    lobe.eval(wo, &lobe.prepare(wo, Transport::Radiance), wi)
 }
 
 #[inline(never)]
 fn value<R: Real>(lobe: &impl Lobe<R>, wo: Vec3<R>, wi: Vec3<R>) -> Rgb<R> {
-    lobe.eval(wo, wi).f_cos
+    lobe.eval(wo, &lobe.prepare(wo, Transport::Radiance), wi).f_cos
 }
 
 #[inline(never)]
@@ -142,7 +102,12 @@ fn normal<R: Real>(sample: &impl Fn(Vec3<R>, [R; 2]) -> Vec3<R>, wo: Vec3<R>, u:
 
 #[inline(never)]
 fn sample<R: Real>(lobe: &impl Lobe<R>, wo: Vec3<R>, u: [R; 3]) -> Sample<R> {
-    lobe.sample(wo, u)
+    lobe.sample(wo, &lobe.prepare(wo, Transport::Radiance), u)
+}
+
+#[inline(never)]
+fn closure_sample<R: Real>(lobe: &impl Lobe<R>, wo: Vec3<R>, u: [R; 3]) -> BsdfSample<R> {
+    Closure::new(lobe, wo).sample(u)
 }
 
 /// A visible normal of Beckmann's distribution; [`Batch::normals`] shows it to the optimiser.

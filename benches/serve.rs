@@ -9,7 +9,8 @@ use crate::lobes::{BATCH, Lanes};
 use gonio_kernel::fresnel::Fresnel;
 use gonio_kernel::lobe::{Conductor, Lambert, RoughDielectric};
 use gonio_kernel::microfacet::{Beckmann, Ggx};
-use gonio_kernel::{F32x8, Lobe, Real, Rgb, Vec3};
+use gonio_kernel::closure::Unguarded;
+use gonio_kernel::{F32x8, Lobe, Real, Rgb, Transport, Vec3};
 use std::hint::black_box;
 use std::io::{BufRead, Write};
 use std::process::ExitCode;
@@ -94,7 +95,7 @@ fn value<L: Lobe<F32x8>>(batch: &Lanes, passes: usize, lobe: impl Fn() -> L) -> 
     timed(Rgb::zero(), passes, |out| {
         let lobe = lobe();
         for (out, (&wo, &wi)) in out.iter_mut().zip(batch.wo.iter().zip(&batch.wi)) {
-            *out = lobe.eval(wo, wi).f_cos;
+            *out = at(&lobe, wo).eval(wi).f_cos;
         }
     })
 }
@@ -104,7 +105,7 @@ fn density<L: Lobe<F32x8>>(batch: &Lanes, passes: usize, lobe: impl Fn() -> L) -
     timed(F32x8::ZERO, passes, |out| {
         let lobe = lobe();
         for (out, (&wo, &wi)) in out.iter_mut().zip(batch.wo.iter().zip(&batch.wi)) {
-            *out = lobe.eval(wo, wi).pdf;
+            *out = at(&lobe, wo).eval(wi).pdf;
         }
     })
 }
@@ -114,7 +115,7 @@ fn sample<L: Lobe<F32x8>>(batch: &Lanes, passes: usize, lobe: impl Fn() -> L) ->
     timed((Vec3::unit_z(), F32x8::ZERO), passes, |out| {
         let lobe = lobe();
         for (out, (&wo, &u)) in out.iter_mut().zip(batch.wo.iter().zip(&batch.u)) {
-            let sample = lobe.sample(wo, u);
+            let sample = at(&lobe, wo).sample(u);
             *out = (sample.wi, F32x8::ONE.or_zero(!sample.event.failed));
         }
     })
@@ -125,13 +126,19 @@ fn weight<L: Lobe<F32x8>>(batch: &Lanes, passes: usize, lobe: impl Fn() -> L) ->
     timed((Vec3::unit_z(), Rgb::zero(), F32x8::ZERO), passes, |out| {
         let lobe = lobe();
         for (out, (&wo, &u)) in out.iter_mut().zip(batch.wo.iter().zip(&batch.u)) {
-            let prepared = lobe.prepare(wo);
-            let sample = lobe.sample_prepared(wo, &prepared, u);
-            let value = lobe.eval_prepared(wo, &prepared, sample.wi).or_zero(!sample.event.failed);
+            let lobe = at(&lobe, wo);
+            let sample = lobe.sample(u);
+            let value = lobe.eval(sample.wi).or_zero(!sample.event.failed);
             let inverse = value.pdf.recip().or_zero(value.pdf.gt(F32x8::ZERO));
             *out = (sample.wi, value.f_cos * inverse, value.pdf);
         }
     })
+}
+
+/// A lobe without a guard, as Mitsuba's has none.
+#[inline(always)]
+fn at<L: Lobe<F32x8>>(lobe: &L, wo: Vec3<F32x8>) -> Unguarded<F32x8, &L> {
+    Unguarded::new(lobe, wo, Transport::Radiance)
 }
 
 /// Nanoseconds per direction: the median pass, which no other program interrupted. What is written is read by somebody, as

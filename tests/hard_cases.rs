@@ -7,7 +7,7 @@
 mod input;
 
 use gonio_kernel::closure::Unguarded;
-use gonio_kernel::{Closure, F32x8, Frame, Surface, Vec3};
+use gonio_kernel::{Closure, F32x8, Frame, Lobe, Surface, Transport, Value, Vec3};
 use gonio_tracer::scene::Material;
 use input::{Arithmetic, number, numbers, read, surface, vector};
 use serde_json::{Value as Json, json};
@@ -32,18 +32,18 @@ const INPUTS: [[f64; 3]; 8] = [
     [0.1, 0.3, 0.7],
 ];
 
-/// A sample with its worth.
+/// A sample with its value.
 struct Drawn {
     wi: [f64; 3],
-    worth: [f64; 4],
+    value: [f64; 4],
     failed: bool,
-    discrete: bool,
+    is_delta: bool,
     transmitted: bool,
 }
 
 impl Drawn {
     fn weight(&self) -> f64 {
-        self.worth[..3].iter().fold(0.0, |most: f64, f| most.max(f / self.worth[3]))
+        self.value[..3].iter().fold(0.0, |most: f64, f| most.max(f / self.value[3]))
     }
 }
 
@@ -75,7 +75,7 @@ impl<'a, R: Arithmetic> Replay<'a, R> {
         let guarded = Closure::new(&self.surface, self.wo).eval(self.wi);
         let mut values = vec![numbers(&guarded, self.at)];
         if self.is_inside() {
-            values.push(numbers(&Unguarded::new(&self.surface, self.wo).eval(self.wi), self.at));
+            values.push(numbers(&Unguarded::new(&self.surface, self.wo, Transport::Radiance).eval(self.wi), self.at));
         }
         values
     }
@@ -83,10 +83,10 @@ impl<'a, R: Arithmetic> Replay<'a, R> {
         let closure = Closure::new(&self.surface, wo);
         let sample = closure.sample(u.map(|u| R::put(u, self.at)));
         let event = &sample.event;
-        let [failed, discrete, transmitted] =
-            [event.failed, event.discrete, event.transmitted].map(|mask| R::is(mask, self.at));
-        let worth = if discrete { closure.discrete(event) } else { closure.eval(sample.wi) };
-        Drawn { wi: read(sample.wi, self.at), worth: numbers(&worth, self.at), failed, discrete, transmitted }
+        let [failed, is_delta, transmitted] =
+            [event.failed, event.is_delta, event.transmitted].map(|mask| R::is(mask, self.at));
+        let value = Value { f_cos: sample.f_cos, pdf: sample.pdf };
+        Drawn { wi: read(sample.wi, self.at), value: numbers(&value, self.at), failed, is_delta, transmitted }
     }
     fn draws(&self) -> impl Iterator<Item = Drawn> {
         INPUTS.iter().map(|&u| self.draw(self.wo, u))
@@ -131,10 +131,10 @@ impl<'a, R: Arithmetic> Replay<'a, R> {
             "finite" => {
                 let wrong = self.draws().find(|d| {
                     let length2: f64 = d.wi.iter().map(|x| x * x).sum();
-                    unsound(&[d.worth]).is_some() || (length2 - 1.0).abs() > 2e-3 || length2.is_nan()
+                    unsound(&[d.value]).is_some() || (length2 - 1.0).abs() > 2e-3 || length2.is_nan()
                 });
                 if let Some(d) = wrong {
-                    return Some(format!("samples {:?} worth {:?}", d.wi, d.worth));
+                    return Some(format!("samples {:?} with {:?}", d.wi, d.value));
                 }
                 unsound(&values)
             }
@@ -144,8 +144,8 @@ impl<'a, R: Arithmetic> Replay<'a, R> {
             }
             "weight_at_most" => {
                 let bound = number(wanted) * 1.000_02;
-                let heavy = self.draws().find(|d| !(d.failed || (d.worth[3] > 0.0 && d.weight() <= bound)));
-                heavy.map(|d| format!("a sample towards {:?} weighs {} ({:?})", d.wi, d.weight(), d.worth))
+                let heavy = self.draws().find(|d| !(d.failed || (d.value[3] > 0.0 && d.weight() <= bound)));
+                heavy.map(|d| format!("a sample towards {:?} weighs {} ({:?})", d.wi, d.weight(), d.value))
             }
             "equals_mirror" => {
                 let [x, y, z] = read(self.wo, self.at);
@@ -159,21 +159,21 @@ impl<'a, R: Arithmetic> Replay<'a, R> {
                 wrong.map(|d| format!("a sample towards {:?} weighs {}, failed {}", d.wi, d.weight(), d.failed))
             }
             "reflectance" => {
-                // The probability of the discrete reflection, which no other sample may have.
+                // The probability of the delta reflection, which no other sample may have.
                 let limit = self.limit("absolute", 1e-6, 1e-9);
                 let wanted = number(wanted);
                 let mut seen = false;
                 for u in (0..200).map(|i| [f64::from(i) / 200.0, 0.5, 0.5]) {
                     let d = self.draw(self.wo, u);
-                    if d.failed || !d.discrete {
-                        return Some(format!("u {u:?} gives no discrete event"));
+                    if d.failed || !d.is_delta {
+                        return Some(format!("u {u:?} gives no delta event"));
                     }
                     let expected = if d.transmitted { 1.0 - wanted } else { wanted };
                     seen |= !d.transmitted;
-                    let wrong = (d.worth[3] - expected).abs();
+                    let wrong = (d.value[3] - expected).abs();
                     if wrong.is_nan() || wrong > limit {
                         let what = if d.transmitted { "transmitted" } else { "reflected" };
-                        return Some(format!("{what} with probability {} instead of {expected}", d.worth[3]));
+                        return Some(format!("{what} with probability {} instead of {expected}", d.value[3]));
                     }
                 }
                 (!seen && wanted > 0.01).then(|| "nothing is reflected".to_owned())

@@ -4,10 +4,12 @@ use crate::support::{Random, cornell_box, repository};
 use glam::{DAffine3, DVec3};
 use gonio_accel::{Intersect, Obvhs, ObvhsOptions, Sharing};
 use gonio_kernel::Rgb;
+use gonio_kernel::energy::Compensation;
+use gonio_kernel::fresnel::Fresnel;
+use gonio_kernel::lobe::{AnyLobe, Conductor, Dielectric, Lambert, Mirror, RoughDielectric};
+use gonio_kernel::microfacet::Ggx;
 use gonio_tracer::image::Picture;
-use gonio_tracer::scene::{
-    Color, Compensation, Environment, FresnelSpec, LobeSpec, MicrofacetSpec, Model, Scene, Sky, SkyMap,
-};
+use gonio_tracer::scene::{Environment, LobeSpec, Scene, Sky, SkyMap};
 use gonio_tracer::{Backend, Crop, Plan, RenderSettings, Rendering, Techniques, World, render};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -29,25 +31,18 @@ fn mean(rendering: &Rendering) -> [f64; 3] {
 fn varied() -> Scene {
     let mut scene = cornell_box(48, 8);
     scene.environment = Environment::constant(Rgb::new(0.2, 0.3, 0.5));
-    let lobe = |weight, model| LobeSpec { weight, model };
     let named = |scene: &mut Scene, name: &str, lobes: Vec<LobeSpec>| {
         scene.materials.iter_mut().find(|m| m.name == name).expect("a material of the shipped scene").lobes = lobes;
     };
-    let mirror = Model::Mirror { reflectance: Color::Constant(Rgb::new(0.9, 0.8, 0.7)) };
-    let metal = Model::Conductor {
-        fresnel: FresnelSpec::Conductor { eta: Rgb::new(0.2, 0.9, 1.1), k: Rgb::new(3.9, 2.4, 2.3) },
-        microfacets: MicrofacetSpec::ggx(0.1, 0.3),
-        compensation: Compensation::None,
-    };
-    let gloss = Model::Conductor {
-        fresnel: FresnelSpec::Schlick { f0: Rgb::new(0.05, 0.05, 0.05) },
-        microfacets: MicrofacetSpec::ggx(0.2, 0.2),
-        compensation: Compensation::None,
-    };
-    let paint = Model::Diffuse { base_color: Color::Constant(Rgb::new(0.5, 0.4, 0.3)) };
-    named(&mut scene, "red", vec![lobe(1.0, mirror)]);
-    named(&mut scene, "green", vec![lobe(1.0, metal)]);
-    named(&mut scene, "white", vec![lobe(1.0, paint), lobe(0.8, gloss)]);
+    let mirror = Mirror::new(Rgb::new(0.9, 0.8, 0.7));
+    let copper = Fresnel::Conductor { eta: Rgb::new(0.2, 0.9, 1.1), k: Rgb::new(3.9, 2.4, 2.3) };
+    let metal = Conductor::new(Ggx { alpha_x: 0.1, alpha_y: 0.3 }, copper);
+    let gloss = Conductor::new(Ggx::isotropic(0.2), Fresnel::Schlick { f0: Rgb::splat(0.05) });
+    let paint = Lambert::new(Rgb::new(0.5, 0.4, 0.3));
+    named(&mut scene, "red", vec![LobeSpec::new(mirror)]);
+    named(&mut scene, "green", vec![LobeSpec::new(metal)]);
+    let weak = LobeSpec { weight: Rgb::splat(0.8), ..LobeSpec::new(gloss) };
+    named(&mut scene, "white", vec![LobeSpec::new(paint), weak]);
     scene
 }
 
@@ -249,8 +244,7 @@ fn no_light_leaks_into_a_closed_black_box() {
     for m in &mut scene.materials {
         m.emission = Rgb::zero();
         m.two_sided = true;
-        m.lobes =
-            vec![LobeSpec { weight: 1.0, model: Model::Diffuse { base_color: Color::Constant(Rgb::splat(1.0)) } }];
+        m.lobes = vec![LobeSpec::new(Lambert::new(Rgb::splat(1.0)))];
     }
     for (scale, by) in [(1.0, DVec3::ZERO), (1e-4, DVec3::ZERO), (1e5, DVec3::ZERO), (1.0, DVec3::splat(1e5))] {
         let rendering = rendered(&moved(&scene, scale, by), Backend::Obvhs, |_| ());
@@ -260,13 +254,14 @@ fn no_light_leaks_into_a_closed_black_box() {
 }
 
 /// The shipped white furnace with an object of another material.
-fn furnace_of(model: Model) -> Scene {
+fn furnace_of(lobe: impl Into<AnyLobe<'static, f32>>) -> Scene {
+    let lobe = lobe.into();
     let mut scene = Scene::load(&repository("scenes/furnace-white.toml")).expect("the shipped scene loads");
     (scene.film.width, scene.film.height, scene.film.spp) = (32, 32, 64);
     scene.integrator.max_depth = 256;
     scene.integrator.russian_roulette = false;
     for material in &mut scene.materials {
-        material.lobes = vec![LobeSpec { weight: 1.0, model: model.clone() }];
+        material.lobes = vec![LobeSpec::new(lobe)];
     }
     scene
 }
@@ -275,7 +270,7 @@ fn furnace_of(model: Model) -> Scene {
 fn clear_glass_under_a_white_sky_cannot_be_seen() {
     // Radiance is compressed on its way in and released on its way out: every path weighs 1.
     for ior in [1.5, 1.0 / 1.5, 2.4, 1.0] {
-        let rendering = rendered(&furnace_of(Model::Dielectric { ior, microfacets: None }), Backend::Obvhs, |_| ());
+        let rendering = rendered(&furnace_of(Dielectric::new(ior)), Backend::Obvhs, |_| ());
         let [r, g, b] = mean(&rendering);
         // Of 65,536 paths a few may still bounce in a corner after 256 events.
         assert!([r, g, b].iter().all(|m| (m - 1.0).abs() < 1e-4), "index {ior}: {r} {g} {b}");
@@ -288,7 +283,7 @@ fn ground_glass_returns_what_its_facets_do_not_lose() {
     // the same light, whether the sky is found by scattering or asked for.
     let mut last = 1.0;
     for alpha in [0.05, 0.2, 0.5] {
-        let model = Model::Dielectric { ior: 1.5, microfacets: Some(MicrofacetSpec::ggx(alpha, alpha)) };
+        let model = RoughDielectric::new(Ggx::isotropic(alpha), 1.5);
         let [both, scattering] = [Techniques::Both, Techniques::Scattering].map(|techniques| {
             mean(&rendered(&furnace_of(model.clone()), Backend::Obvhs, |s| s.techniques = techniques))[1]
         });
@@ -302,11 +297,8 @@ fn ground_glass_returns_what_its_facets_do_not_lose() {
 #[test]
 fn a_rough_white_metal_vanishes_once_its_lost_light_is_given_back() {
     for alpha in [0.3, 1.0] {
-        let metal = |compensation| Model::Conductor {
-            fresnel: FresnelSpec::Schlick { f0: Rgb::splat(1.0) },
-            microfacets: MicrofacetSpec::ggx(alpha, alpha),
-            compensation,
-        };
+        let white = Conductor::new(Ggx::isotropic(alpha), Fresnel::Schlick { f0: Rgb::splat(1.0) });
+        let metal = |compensation| white.with_compensation(compensation);
         let of = |compensation| mean(&rendered(&furnace_of(metal(compensation)), Backend::Obvhs, |_| ()))[1];
         assert!(of(Compensation::None) < 0.997, "alpha {alpha}: what single scattering loses can be seen");
         for compensation in [Compensation::KullaConty, Compensation::Turquin] {

@@ -8,8 +8,9 @@ use std::time::{Duration, Instant};
 
 use crate::support::{Folder, data};
 use gonio_kernel::Rgb;
+use gonio_kernel::lobe::{AnyLobe, Lambert};
 use gonio_tracer::image::{Metadata, Picture, write_exr, write_png};
-use gonio_tracer::scene::{Color, Environment, Model, Scene};
+use gonio_tracer::scene::{Environment, Scene};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
@@ -263,7 +264,7 @@ fn materials_come_from_the_scene_then_the_library_then_grey() {
     let corner = scene.instances[3].transform.transform_point3([1.0, 0.0, 0.0].into());
     assert_eq!(corner.to_array(), [2.0, 0.0, 1.0]);
     let red = &scene.materials[scene.meshes[0].materials[2] as usize];
-    let Model::Diffuse { base_color: Color::Constant(color) } = red.lobes[0].model else { panic!("{red:?}") };
+    let AnyLobe::Lambert(Lambert { albedo: color }) = red.lobes[0].lobe else { panic!("{red:?}") };
     assert_eq!(color.r, 0.6);
     assert_eq!(folder.warnings(&scene), ["sub/ship.obj:11: material \"keel\" is not defined; drawn in grey"]);
 }

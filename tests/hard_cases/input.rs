@@ -1,10 +1,8 @@
 //! Cases read: numbers, directions and materials of JSON in every arithmetic, at one place among strangers.
 
-use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::eon::Directional;
-use gonio_kernel::lobe::{AnyLobe, Conductor, Dielectric, Eon, Lambert, Mirror, Phong, PhongNorm, RoughDielectric};
-use gonio_kernel::microfacet::{Beckmann, Ggx, Masking, Microfacets};
-use gonio_kernel::{Alpha, F32x8, Mask8, Real, Rgb, Roughness, Surface, Value, Vec3};
+use gonio_kernel::lobe::AnyLobe;
+use gonio_kernel::model::{Parameter, Problem, Source, Words};
+use gonio_kernel::{F32x8, Mask8, Parameters, Real, Rgb, Surface, Value, Vec3};
 use serde_json::Value as Json;
 
 /// A `Real` whose number at one place is ours.
@@ -87,71 +85,41 @@ pub(super) fn numbers<R: Arithmetic>(value: &Value<R>, at: usize) -> [f64; 4] {
 
 /// The kernel's surface of a material, out of its domain or not. (A material file would refuse what is out of it.)
 pub(super) fn surface<R: Arithmetic>(material: &Json) -> Surface<R> {
+    let one = |surface: Surface<R>, json: &Json| {
+        let weight = json.get("weight").map_or(1.0, number);
+        let lobe = AnyLobe::read(&mut Keys(json)).unwrap_or_else(|why| panic!("{json}: {why}"));
+        surface.with(R::all(weight), lobe).unwrap_or_else(|why| panic!("{material}: {why}"))
+    };
     match material["lobes"].as_array() {
-        Some(lobes) => {
-            lobes.iter().fold(Surface::black(), |s, json| s.with(R::all(number(&json["weight"])), lobe::<R>(json)))
-        }
-        None => Surface::of(lobe::<R>(material)),
+        Some(lobes) => lobes.iter().fold(Surface::black(), one),
+        None => one(Surface::black(), material),
     }
 }
 
-pub(super) fn lobe<R: Arithmetic>(json: &Json) -> AnyLobe<R> {
-    let scalar = |key: &str| R::all(number(&json[key]));
-    let colour = |key: &str| {
-        let c = &json[key];
-        Rgb::new(R::all(number(&c[0])), R::all(number(&c[1])), R::all(number(&c[2])))
-    };
-    let word = |key: &str, default| json[key].as_str().unwrap_or(default).to_owned();
-    let has = |key: &str| json.get(key).is_some();
-    let microfacets = || -> Microfacets<R> {
-        let same = || match has("alpha") {
-            true => scalar("alpha"),
-            false => Alpha::from(Roughness(scalar("roughness"))).0,
-        };
-        let [alpha_x, alpha_y] = match has("alpha_x") {
-            true => [scalar("alpha_x"), scalar("alpha_y")],
-            false => [same(), same()],
-        };
-        match &*word("distribution", "ggx") {
-            "ggx" => Ggx { alpha_x, alpha_y }.into(),
-            "beckmann" => Beckmann { alpha_x, alpha_y }.into(),
-            other => panic!("unknown distribution {other}"),
-        }
-    };
-    let masking = match &*word("masking", "correlated") {
-        "correlated" => Masking::HeightCorrelated,
-        "separable" => Masking::Separable,
-        other => panic!("unknown masking {other}"),
-    };
-    match json["type"].as_str() {
-        Some("diffuse") => Lambert::new(colour("base_color")).into(),
-        Some("mirror") => Mirror::new(colour("reflectance")).into(),
-        Some("eon") => {
-            let directional =
-                if word("albedo", "exact") == "fitted" { Directional::Fitted } else { Directional::Exact };
-            Eon { directional, ..Eon::new(colour("base_color"), scalar("roughness")) }.into()
-        }
-        Some("phong") => {
-            let lecture = word("normalization", "lafortune") == "lecture";
-            let norm = if lecture { PhongNorm::Lecture } else { PhongNorm::Lafortune };
-            Phong { diffuse: colour("diffuse"), glossy: colour("glossy"), exponent: scalar("exponent"), norm }.into()
-        }
-        Some("conductor") => {
-            let fresnel = if has("eta") {
-                Fresnel::Conductor { eta: colour("eta"), k: colour("k") }
-            } else if has("ior") {
-                Fresnel::Dielectric { eta: scalar("ior") }
-            } else if has("f82") {
-                Fresnel::F82 { f0: colour("f0"), tint: colour("f82") }
-            } else {
-                Fresnel::Schlick { f0: colour("f0") }
-            };
-            Conductor::new(microfacets(), fresnel).with_masking(masking).into()
-        }
-        Some("dielectric") if ["alpha", "alpha_x", "roughness"].iter().any(|key| has(key)) => {
-            RoughDielectric::new(microfacets(), scalar("ior")).with_masking(masking).into()
-        }
-        Some("dielectric") => Dielectric::new(scalar("ior")).into(),
-        other => panic!("unknown type {other:?}"),
+/// A JSON object as a source of parameters, in whatever range.
+struct Keys<'a>(&'a Json);
+
+impl<R: Arithmetic> Source<R> for Keys<'_> {
+    type Error = String;
+
+    fn model(&self) -> &str {
+        self.0["type"].as_str().unwrap_or("diffuse")
+    }
+    fn has(&self, key: &str) -> bool {
+        self.0.get(key).is_some()
+    }
+    fn number(&mut self, parameter: &'static Parameter) -> Result<Option<R>, String> {
+        Ok(self.0.get(parameter.key).map(|json| R::all(number(json))))
+    }
+    fn color(&mut self, parameter: &'static Parameter) -> Result<Option<Rgb<R>>, String> {
+        let channel = |json: &Json, c: usize| R::all(number(json.get(c).unwrap_or(json)));
+        Ok(self.0.get(parameter.key).map(|c| Rgb::new(channel(c, 0), channel(c, 1), channel(c, 2))))
+    }
+    fn word(&mut self, words: &'static Words) -> Result<Option<usize>, String> {
+        let Some(json) = self.0.get(words.key) else { return Ok(None) };
+        json.as_str().and_then(|word| words.find(word)).map(Some).ok_or_else(|| format!("{json} is no {}", words.key))
+    }
+    fn refuse(&mut self, problem: Problem) -> String {
+        format!("{problem:?}")
     }
 }

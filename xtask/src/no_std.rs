@@ -18,10 +18,11 @@ use std::process::{Command, ExitCode};
 
 /// The kinds of number.
 const NUMBERS: [&str; 3] = ["f32", "f64", "F32x8"];
-/// The methods of the trait `Lobe`.
-const METHODS: [&str; 5] = ["eval", "sample", "discrete", "albedo_estimate", "domain"];
+/// The methods of the trait `Lobe`, each with what it prepares, reading the parameters, and the closure; `claims` are those methods
+/// that instruments ask.
+const METHODS: [&str; 7] = ["read", "eval", "sample", "delta", "closure", "albedo_estimate", "claims"];
 /// Types whose methods the proof calls in one function per number.
-const TYPES: [&str; 6] = ["Closure", "Unguarded", "Surface", "Frame", "Rgb", "units"];
+const TYPES: [&str; 7] = ["Closure", "Unguarded", "Surface", "Surface_claims", "Frame", "Rgb", "units"];
 /// Functions that have no number, and what a program without std must bring along.
 const OTHERS: [&str; 5] = ["lanes", "prove", "_start", "memcpy", "memset"];
 /// What the panic handler calls.

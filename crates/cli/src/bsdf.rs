@@ -11,7 +11,7 @@ mod sample;
 
 use anyhow::{Context, Result, anyhow};
 use clap::{Subcommand, ValueEnum};
-use gonio_kernel::F32x8;
+use gonio_kernel::{F32x8, Parameters};
 use gonio_tracer::constant_surface;
 use gonio_tracer::scene::Material;
 use model::Model;
@@ -60,12 +60,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 fn load(path: &Path, precision: Precision) -> Result<Box<dyn Model>> {
     let text = std::fs::read_to_string(path).with_context(|| format!("{}: cannot be read", path.display()))?;
     let material = Material::from_toml_str(&text, path)?;
-    let model: Option<Box<dyn Model>> = match precision {
-        Precision::F32 => constant_surface::<f32>(&material).map(|s| Box::new(s) as _),
-        Precision::F64 => constant_surface::<f64>(&material).map(|s| Box::new(s) as _),
-        Precision::Lanes => constant_surface::<F32x8>(&material).map(|s| Box::new(s) as _),
-    };
-    model.ok_or_else(|| anyhow!("{}: a material with images cannot be evaluated by itself", path.display()))
+    let surface = constant_surface(&material)
+        .ok_or_else(|| anyhow!("{}: a material with images cannot be evaluated by itself", path.display()))?;
+    Ok(match precision {
+        Precision::F32 => Box::new(surface),
+        Precision::F64 => Box::new(surface.to::<f64>()),
+        Precision::Lanes => Box::new(surface.to::<F32x8>()),
+    })
 }
 
 impl Precision {

@@ -7,7 +7,7 @@
 use glam::Vec3;
 use gonio_kernel::lobe::{RoughDielectric, TwoSided};
 use gonio_kernel::microfacet::Ggx;
-use gonio_kernel::{Frame, Lobe, Surface};
+use gonio_kernel::{Closure, Frame, Transport, closure::Unguarded};
 
 /// The engine's vector as the kernel's.
 fn kernel(v: Vec3) -> gonio_kernel::Vec3<f32> {
@@ -21,19 +21,19 @@ fn engine(v: gonio_kernel::Vec3<f32>) -> Vec3 {
 
 fn main() {
     // A pane of ground glass, seen from within.
-    let glass = RoughDielectric::new(Ggx { alpha_x: 0.1_f32, alpha_y: 0.1 }, 1.5);
-    let surface = Surface::of(glass);
+    let glass = RoughDielectric::new(Ggx::isotropic(0.1_f32), 1.5);
     let (normal, to_viewer) = (Vec3::Y, Vec3::new(0.3, -0.9, 0.1).normalize());
     let frame = Frame::from_normal(kernel(normal));
 
-    let closure = gonio_kernel::Closure::new(&surface, frame.to_local(kernel(to_viewer)));
+    let closure = Closure::new(glass, frame.to_local(kernel(to_viewer)));
     let sample = closure.sample([0.9, 0.4, 0.2]);
     let wi = engine(frame.to_world(sample.wi));
     let what = if sample.event.transmitted { "refracted" } else { "reflected" };
     println!("light {what} towards the viewer comes from {wi}");
 
-    // A lobe can be used by itself, without surface, closure and guard, and on both sides.
+    // A lobe can be used without the guard, and on both sides.
     let paper = TwoSided(gonio_kernel::lobe::Lambert::new(gonio_kernel::Rgb::splat(0.8_f32)));
-    let value = paper.eval(frame.to_local(kernel(to_viewer)), frame.to_local(kernel(-normal)));
+    let paper = Unguarded::new(paper, frame.to_local(kernel(to_viewer)), Transport::Radiance);
+    let value = paper.eval(frame.to_local(kernel(-normal)));
     println!("paper from behind: {:.4}", value.f_cos.g);
 }

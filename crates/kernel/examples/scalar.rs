@@ -8,15 +8,14 @@ use gonio_kernel::fresnel::Fresnel;
 use gonio_kernel::lobe::{Conductor, Lambert};
 use gonio_kernel::metal::Metal;
 use gonio_kernel::microfacet::Ggx;
-use gonio_kernel::{Alpha, Closure, Frame, Rgb, Roughness, Surface, Vec3};
+use gonio_kernel::surface::SurfaceError;
+use gonio_kernel::{Closure, Frame, Rgb, Roughness, Surface, Vec3};
 
-fn main() {
+fn main() -> Result<(), SurfaceError> {
     // Brushed gold over a brown ground: a quarter of it is metal.
-    let Alpha(along) = Alpha::from(Roughness(0.2_f32));
-    let Alpha(across) = Alpha::from(Roughness(0.5_f32));
-    let gold = Conductor::new(Ggx { alpha_x: along, alpha_y: across }, Fresnel::from(Metal::Gold));
+    let gold = Conductor::new(Ggx::new(Roughness(0.2_f32), Roughness(0.5)), Fresnel::from(Metal::Gold));
     let brown = Lambert::new(Rgb::new(0.3_f32, 0.2, 0.1));
-    let surface = Surface::black().with(0.25, gold).with(0.75, brown);
+    let surface = Surface::black().with(0.25, gold)?.with(0.75, brown)?;
 
     // The hit: a normal, the direction in which the surface was brushed, and where the viewer is, in world space.
     let frame = Frame::from_normal_tangent(Vec3::new(0.0_f32, 1.0, 0.1), Vec3::new(1.0, 0.0, 0.0));
@@ -32,9 +31,8 @@ fn main() {
     let sample = closure.sample([0.3, 0.6, 0.1]);
     if sample.event.failed {
         println!("absorbed");
-        return;
+    } else {
+        println!("the path goes on along {:?} with weight {:?}", frame.to_world(sample.wi), sample.weight);
     }
-    let value = if sample.event.discrete { closure.discrete(&sample.event) } else { closure.eval(sample.wi) };
-    let weight = value.f_cos * (1.0 / value.pdf);
-    println!("the path goes on along {:?} with weight {weight:?}", frame.to_world(sample.wi));
+    Ok(())
 }

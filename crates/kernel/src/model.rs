@@ -192,6 +192,16 @@ pub trait Parameters: Copy {
     /// What the source says.
     fn read<S: Source<Self::Real>>(source: &mut S) -> Result<Self, S::Error>;
 
+    /// It at usual values: each number its default or what its quantity says is typical, the first of all ways and words. None if
+    /// a rule over several parameters forbids that.
+    ///
+    /// ```
+    /// use gonio_kernel::{lobe::Phong, model::Parameters};
+    /// assert_eq!(Phong::<f64>::typical().unwrap().exponent, 30.0);
+    /// ```
+    fn typical() -> Option<Self> {
+        Self::read(&mut source::Typical).ok()
+    }
     /// The same in another arithmetic, each number rounded to it.
     ///
     /// ```
@@ -237,7 +247,7 @@ pub trait Choice: Copy + PartialEq + 'static {
 
 /// A number of a file, or its default.
 #[doc(hidden)]
-pub fn read_number<R: Real, S: Source<R>>(source: &mut S, p: &'static Parameter) -> Result<R, S::Error> {
+pub fn read_number<S: Source<R>, R: Real>(source: &mut S, p: &'static Parameter) -> Result<R, S::Error> {
     match (source.number(p)?, p.default) {
         (Some(x), _) => Ok(x),
         (None, Some(default)) => Ok(R::lit(default)),
@@ -247,7 +257,7 @@ pub fn read_number<R: Real, S: Source<R>>(source: &mut S, p: &'static Parameter)
 
 /// A colour of a file, or its default, a grey.
 #[doc(hidden)]
-pub fn read_color<R: Real, S: Source<R>>(source: &mut S, p: &'static Parameter) -> Result<crate::Rgb<R>, S::Error> {
+pub fn read_color<S: Source<R>, R: Real>(source: &mut S, p: &'static Parameter) -> Result<crate::Rgb<R>, S::Error> {
     match (source.color(p)?, p.default) {
         (Some(c), _) => Ok(c),
         (None, Some(default)) => Ok(crate::Rgb::splat(R::lit(default))),

@@ -53,7 +53,7 @@ pub mod world;
 pub use backend::{Backend, BackendError};
 pub use layers::Layers;
 pub use light::Techniques;
-pub use material::constant_surface;
+pub use material::{BatchBsdf, CustomLobe, MaterialSurface, Scattered, constant_surface};
 pub use plan::Plan;
 pub use point::SurfacePoint;
 pub use render::{Crop, Pass, Progress, RenderSettings, Rendering, render};

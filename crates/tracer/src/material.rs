@@ -1,28 +1,111 @@
-//! Materials made ready: a scene's lobe list as a kernel surface, with textures looked up per lane.
+//! Materials made ready: a scene's lobes as a BSDF over eight lanes, with textures looked up per lane.
 //!
-//! Materials are ordered by variant, the sequence of their lobes' models, so that a queue sorted by material has equal
-//! variants side by side and eight paths can be shaded at once even if no two share a material.
+//! Materials are ordered by variant, the code that their lobes run, so that a queue sorted by material has equal variants side by
+//! side and eight paths can be shaded at once even if no two share a material. How many places a surface has follows from the
+//! variant: one lobe is asked by itself, up to four and up to twelve have a surface of that size. A batch of eight is shaded through
+//! one dynamic call, behind which everything about its lobes is known.
 
-use crate::scene::{
-    Color, Compensation, Directional, Distribution, FresnelSpec, LobeSpec, Masking, Material, MicrofacetSpec, Model,
-    NormalMapSpec, PhongNorm, Scene,
-};
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use crate::scene::{LobeSpec, Material, NormalMapSpec, Scene, TexturedParameter};
 use crate::texture::Texture;
-use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{AnyLobe, Conductor, Dielectric, Eon, Lambert, Mirror, Phong, RoughDielectric};
-use gonio_kernel::microfacet::{Beckmann, Ggx, Microfacets};
-use gonio_kernel::{F32x8, Real, Rgb, Surface};
+use gonio_kernel::lobe::{AnyLobe, Weighted};
+use gonio_kernel::surface::SurfaceError;
+use gonio_kernel::{BsdfSample, Closure, F32x8, Lobe, Parameters, Real, Rgb, Surface, Value, Vec3, each_lane};
+
+/// The kernel's lobes in f32.
+type Kernel = AnyLobe<'static, f32>;
+/// And in eight lanes.
+type Kernel8 = AnyLobe<'static, F32x8>;
+/// How many lobes a material may have.
+pub(crate) const MOST_LOBES: usize = 12;
+/// And how many of them may be coats.
+pub(crate) const MOST_COATS: usize = 3;
+
+/// A surface with room for any material: twelve lobes, three of them coats.
+pub type MaterialSurface<R> = Surface<R, AnyLobe<'static, R>, MOST_LOBES, MOST_COATS>;
+/// The usual size: a coat over up to three.
+type SmallSurface<R> = Surface<R, AnyLobe<'static, R>, 4, 1>;
+
+/// What a BSDF does with eight paths.
+#[derive(Clone, Copy, Debug)]
+pub struct Scattered {
+    /// Value and density towards the light sample; zeros if there was none.
+    pub light: Value<F32x8>,
+    /// The direction in which the paths go on.
+    pub sample: BsdfSample<F32x8>,
+}
+
+/// A BSDF as the renderer calls it: once per batch of eight. Every lobe over eight lanes is one.
+pub trait BatchBsdf: Debug + Send + Sync {
+    /// The value at the light sample's direction, if there is one, and a sampled direction, all local.
+    fn scatter(&self, wo: Vec3<F32x8>, light: Option<Vec3<F32x8>>, u: [F32x8; 3]) -> Scattered;
+    /// About how much light it returns, seen along the normal: what the layer "albedo" shows.
+    fn albedo(&self) -> Rgb<F32x8>;
+}
+
+impl<L: Lobe<F32x8> + Debug + Send + Sync> BatchBsdf for L {
+    fn scatter(&self, wo: Vec3<F32x8>, light: Option<Vec3<F32x8>>, u: [F32x8; 3]) -> Scattered {
+        let closure = Closure::new(self, wo);
+        let light = light.map_or(Value::zero(), |wi| closure.eval(wi));
+        Scattered { light, sample: closure.sample(u) }
+    }
+    fn albedo(&self) -> Rgb<F32x8> {
+        self.albedo_estimate(Vec3::unit_z()).map(|x| x.min(F32x8::ONE))
+    }
+}
+
+/// A user's own lobe as a material: any lobe made of parameters, alone or in a combination.
+///
+/// ```
+/// use gonio_kernel::{Rgb, lobe::{Lambert, Layer, Layering, Mirror}};
+/// use gonio_tracer::CustomLobe;
+///
+/// let coated = Layer::new(Mirror::new(Rgb::splat(0.05_f32)), Lambert::new(Rgb::splat(0.5)), Layering::Reciprocal)?;
+/// let lobe = CustomLobe::new(coated);
+/// # Ok::<(), gonio_kernel::lobe::NoCoat>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct CustomLobe {
+    lanes: Arc<dyn BatchBsdf>,
+    pub(crate) transmits: bool,
+    pub(crate) has_delta: bool,
+    pub(crate) anisotropic: bool,
+}
+
+impl CustomLobe {
+    /// The lobe in every lane.
+    pub fn new<L>(lobe: L) -> Self
+    where
+        L: Lobe<f32> + Parameters<Real = f32>,
+        L::Of<F32x8>: Lobe<F32x8> + Debug + Send + Sync + 'static,
+    {
+        let properties = lobe.properties();
+        Self {
+            lanes: Arc::new(lobe.to::<F32x8>()),
+            transmits: properties.transmits,
+            has_delta: properties.has_delta,
+            anisotropic: properties.anisotropic,
+        }
+    }
+}
+
+/// Equal if it is the same lobe, not a copy of it.
+impl PartialEq for CustomLobe {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.lanes, &other.lanes)
+    }
+}
 
 /// A material, and what the queue needs to know of it.
 #[derive(Clone, Debug)]
 pub(crate) struct PreparedMaterial {
     pub(crate) spec: Material,
-    /// Its lobes.
-    parts: Vec<Part>,
-    /// Equal numbers have equal sequences of models.
+    /// Equal numbers run the same code.
     pub(crate) variant: u32,
-    /// The surface, if no texture is involved.
-    pub(crate) surface: Option<Surface<F32x8>>,
+    /// The BSDF, if no texture is involved.
+    constant: Option<Arc<dyn BatchBsdf>>,
     pub(crate) emission: Rgb<f32>,
     pub(crate) two_sided: bool,
     pub(crate) textured: bool,
@@ -32,53 +115,56 @@ pub(crate) struct PreparedMaterial {
     pub(crate) transmits: bool,
 }
 
-fn is_anisotropic(model: &Model) -> bool {
-    match model {
-        Model::Conductor { microfacets: m, .. } | Model::Dielectric { microfacets: Some(m), .. } => {
-            m.alpha_x != m.alpha_y
-        }
-        _ => false,
-    }
-}
-
 impl PreparedMaterial {
     /// The materials in the order of their variants, and where each of the scene's went.
-    pub(crate) fn prepare(scene: &Scene) -> (Vec<Self>, Vec<u32>) {
-        let parts_of: Vec<Vec<Part>> = scene.materials.iter().map(parts).collect();
-        // Kinds have no order of their own: variants are numbered as the scene first shows them.
-        let mut variants: Vec<Vec<Kind>> = Vec::new();
-        let mut number = |parts: &Vec<Part>| {
-            let pattern = parts.iter().map(|part| part.kind).collect();
-            let known = variants.iter().position(|v| *v == pattern);
+    ///
+    /// # Errors
+    /// A sentence: a material's lobes do not fit into a surface.
+    pub(crate) fn prepare(scene: &Scene) -> Result<(Vec<Self>, Vec<u32>), String> {
+        for material in &scene.materials {
+            let fits = surface::<f32, MOST_LOBES, MOST_COATS>(&material.lobes, |spec, _| (spec.weight, spec.lobe));
+            fits.map_err(|why| format!("material \"{}\": {why}", material.name))?;
+        }
+        // Variants have no order of their own: they are numbered as the scene first shows them.
+        let mut variants: Vec<&Material> = Vec::new();
+        let mut number = |material| {
+            let known = variants.iter().position(|v| same_code(v, material));
             known.unwrap_or_else(|| {
-                variants.push(pattern);
+                variants.push(material);
                 variants.len() - 1
             })
         };
-        let variant_of: Vec<usize> = parts_of.iter().map(&mut number).collect();
+        let variant_of: Vec<usize> = scene.materials.iter().map(&mut number).collect();
         let mut by_variant: Vec<usize> = (0..scene.materials.len()).collect();
         by_variant.sort_by_key(|&i| variant_of[i]); // stable: the scene's order within a variant
         let mut order = vec![0; scene.materials.len()];
         let mut prepared: Vec<Self> = Vec::with_capacity(scene.materials.len());
         for (place, &i) in by_variant.iter().enumerate() {
             order[i] = place as u32;
-            let (spec, parts) = (&scene.materials[i], parts_of[i].clone());
-            let has = |is: fn(&LobeSpec) -> bool| spec.lobes.iter().any(is);
-            prepared.push(Self {
-                variant: variant_of[i] as u32,
-                surface: surface_of(&parts),
-                emission: spec.emission,
-                two_sided: spec.two_sided,
-                textured: parts.iter().any(Part::is_textured),
-                normal_map: spec.normal_map,
-                anisotropic: has(|l| is_anisotropic(&l.model)),
-                discrete: has(|l| matches!(l.model, Model::Mirror { .. } | Model::Dielectric { .. })),
-                transmits: has(|l| matches!(l.model, Model::Dielectric { .. })),
-                spec: spec.clone(),
-                parts,
-            });
+            prepared.push(Self::new(&scene.materials[i], variant_of[i] as u32));
         }
-        (prepared, order)
+        Ok((prepared, order))
+    }
+
+    fn new(spec: &Material, variant: u32) -> Self {
+        let properties: Vec<_> = spec.lobes.iter().map(|l| l.lobe.properties()).collect();
+        let custom = |is: fn(&CustomLobe) -> bool| spec.custom.as_ref().is_some_and(is);
+        let textured = spec.is_textured();
+        Self {
+            variant,
+            constant: (!textured).then(|| match &spec.custom {
+                Some(custom) => custom.lanes.clone(),
+                None => constant(spec),
+            }),
+            emission: spec.emission,
+            two_sided: spec.two_sided,
+            textured,
+            normal_map: spec.normal_map,
+            anisotropic: properties.iter().any(|p| p.anisotropic) || custom(|c| c.anisotropic),
+            discrete: properties.iter().any(|p| p.has_delta) || custom(|c| c.has_delta),
+            transmits: properties.iter().any(|p| p.transmits) || custom(|c| c.transmits),
+            spec: spec.clone(),
+        }
     }
 
     /// Whether light leaves it by itself.
@@ -87,152 +173,124 @@ impl PreparedMaterial {
     }
 }
 
-/// The kernel surface of a material without textures, in any precision; `None` if it has textures.
-pub fn constant_surface<R: Real>(material: &Material) -> Option<Surface<R>> {
-    surface_of(&parts(material))
+/// Whether both materials' lobes run the same code. Two lobes of a user's never do.
+fn same_code(a: &Material, b: &Material) -> bool {
+    let alike = |(a, b): (&LobeSpec, &LobeSpec)| a.coat == b.coat && a.lobe.same_code(&b.lobe);
+    a.custom == b.custom && a.lobes.len() == b.lobes.len() && a.lobes.iter().zip(&b.lobes).all(alike)
 }
 
-fn surface_of<R: Real>(parts: &[Part]) -> Option<Surface<R>> {
-    let constant = |x: f32| R::lit(f64::from(x));
-    (!parts.iter().any(Part::is_textured)).then(|| {
-        parts.iter().fold(Surface::black(), |surface, part| {
-            let color = match part.color {
-                Some(Color::Constant(c)) => c.map(constant),
-                _ => Rgb::zero(),
-            };
-            surface.with(constant(part.weight), put_together(part.kind, color, part.numbers.map(constant)))
-        })
-    })
-}
-
-/// The surfaces of eight materials of one variant at eight texture coordinates.
-pub(crate) fn lane_surface(
-    materials: [&PreparedMaterial; F32x8::LANES],
-    textures: &[Texture],
-    uv: [F32x8; 2],
-) -> Surface<F32x8> {
-    let [u, v] = uv.map(F32x8::to_array);
-    let slots = 0..materials[0].parts.len();
-    slots.fold(Surface::black(), |surface, slot| {
-        let parts = materials.map(|m| &m.parts[slot]);
-        let color = |lane: usize| match parts[lane].color {
-            Some(Color::Constant(c)) => c,
-            Some(Color::Texture { texture, scale }) => textures[texture].sample(u[lane], v[lane]) * scale,
-            None => Rgb::zero(),
-        };
-        let colors: [Rgb<f32>; F32x8::LANES] = std::array::from_fn(color);
-        let color =
-            Rgb::new(F32x8::new(colors.map(|c| c.r)), F32x8::new(colors.map(|c| c.g)), F32x8::new(colors.map(|c| c.b)));
-        let numbers = std::array::from_fn(|i| F32x8::new(parts.map(|part| part.numbers[i])));
-        surface.with(F32x8::new(parts.map(|part| part.weight)), put_together(parts[0].kind, color, numbers))
-    })
-}
-
-/// A lobe taken apart: what decides its code, and numbers that may differ from lane to lane.
-#[derive(Clone, Debug)]
-struct Part {
-    kind: Kind,
-    color: Option<Color>,
-    /// Widths first, then what follows in the kernel's lobe.
-    numbers: [f32; NUMBERS],
-    weight: f32,
-}
-
-impl Part {
+impl Material {
     fn is_textured(&self) -> bool {
-        matches!(self.color, Some(Color::Texture { .. }))
+        self.lobes.iter().any(|lobe| !lobe.textures.is_empty())
     }
 }
 
-fn parts(material: &Material) -> Vec<Part> {
-    material.lobes.iter().map(taken_apart).collect()
+/// The kernel surface of a material without textures; none if it has textures or is a user's own lobe.
+pub fn constant_surface(material: &Material) -> Option<MaterialSurface<f32>> {
+    if material.is_textured() || material.custom.is_some() {
+        return None;
+    }
+    surface(&material.lobes, |spec, _| (spec.weight, spec.lobe)).ok()
 }
 
-/// What decides which code a lobe runs: equal for lobes that can share a lane batch. All else about it are numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    Diffuse,
-    Eon(Directional),
-    Mirror,
-    Phong(PhongNorm),
-    Conductor { distribution: Distribution, masking: Masking, fresnel: FresnelKind, compensation: Compensation },
-    Dielectric,
-    RoughDielectric { distribution: Distribution, masking: Masking },
+/// The lobes of a material as a surface; `lobe` says what each becomes.
+fn surface<R: Real, const N: usize, const C: usize>(
+    lobes: &[LobeSpec],
+    lobe: impl Fn(&LobeSpec, usize) -> (Rgb<R>, AnyLobe<'static, R>),
+) -> Result<Surface<R, AnyLobe<'static, R>, N, C>, SurfaceError> {
+    lobes.iter().enumerate().try_fold(Surface::empty(), |surface, (slot, spec)| {
+        let (weight, lobe) = lobe(spec, slot);
+        match spec.coat {
+            Some(layering) => surface.coat(weight, lobe, layering),
+            None => surface.with(weight, lobe),
+        }
+    })
 }
 
-/// Which Fresnel's equations.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum FresnelKind {
-    Conductor,
-    Schlick,
-    F82,
-    Dielectric,
+/// Calls `with` with the BSDF that the lobes of a variant make; `lobe` says what each becomes.
+fn assemble<T>(
+    lobes: &[LobeSpec],
+    lobe: impl Fn(&LobeSpec, usize) -> (Rgb<F32x8>, Kernel8),
+    with: impl FnOnce(&dyn IntoShared) -> T,
+) -> T {
+    let coats = lobes.iter().filter(|spec| spec.coat.is_some()).count();
+    // `prepare` has seen to it that the lobes fit.
+    match (lobes, coats) {
+        ([only], 0) => {
+            let (weight, lobe) = lobe(only, 0);
+            with(&Weighted { weight, lobe })
+        }
+        ([_, .., _] | [_], 0..=1) if lobes.len() <= 4 => {
+            with(&surface(lobes, lobe).unwrap_or(SmallSurface::<F32x8>::empty()))
+        }
+        _ => with(&surface(lobes, lobe).unwrap_or(MaterialSurface::<F32x8>::empty())),
+    }
 }
 
-/// The most numbers that a lobe has.
-const NUMBERS: usize = 8;
+/// A BSDF that can be used at once, or kept.
+trait IntoShared: BatchBsdf {
+    fn share(&self) -> Arc<dyn BatchBsdf>;
+}
+impl<B: BatchBsdf + Copy + 'static> IntoShared for B {
+    fn share(&self) -> Arc<dyn BatchBsdf> {
+        Arc::new(*self)
+    }
+}
 
-fn taken_apart(lobe: &LobeSpec) -> Part {
-    let numbers = |given: &[f32]| {
-        let mut all = [0.0; NUMBERS];
-        all[..given.len()].copy_from_slice(given);
-        all
+fn constant(material: &Material) -> Arc<dyn BatchBsdf> {
+    let splat = |x: f32| F32x8::splat(x);
+    let lobe = |spec: &LobeSpec, _| (spec.weight.map(splat), spec.lobe.to::<F32x8>());
+    assemble(&material.lobes, lobe, |bsdf| bsdf.share())
+}
+
+/// What eight paths scatter by: materials of one variant at eight texture coordinates. `with` is called once.
+pub(crate) fn with_lanes<T>(
+    materials: [&PreparedMaterial; F32x8::LANES],
+    alike: bool,
+    textures: &[Texture],
+    [u, v]: [F32x8; 2],
+    with: impl FnOnce(&dyn BatchBsdf) -> T,
+) -> T {
+    if let (Some(bsdf), true) = (&materials[0].constant, alike) {
+        return with(&**bsdf);
+    }
+    let coordinates = [u, v].map(F32x8::to_array);
+    let lobe = |_: &LobeSpec, slot: usize| gather(materials.map(|m| &m.spec.lobes[slot]), textures, coordinates);
+    assemble(&materials[0].spec.lobes, lobe, |bsdf| with(bsdf))
+}
+
+/// Eight lobes that run the same code, side by side, with their textures looked up.
+fn gather(
+    specs: [&LobeSpec; F32x8::LANES],
+    textures: &[Texture],
+    [u, v]: [[f32; F32x8::LANES]; 2],
+) -> (Rgb<F32x8>, Kernel8) {
+    let weight = |channel: fn(Rgb<f32>) -> f32| F32x8::from_fn(|l| channel(specs[l].weight));
+    let weight = Rgb::new(weight(|c| c.r), weight(|c| c.g), weight(|c| c.b));
+    let constant = Kernel::gather(each_lane(|l| &specs[l].lobe));
+    if specs.iter().all(|spec| spec.textures.is_empty()) {
+        return (weight, constant);
+    }
+    // Each textured number is its constant times the texture; numbers are counted as `map` meets them.
+    let factors = |at: usize| {
+        let of = |l: usize| specs[l].textures.iter().find(|t| t.covers(at));
+        let factor = |l: usize| of(l).map_or(1.0, |t| t.channel(textures[t.texture].sample(u[l], v[l]), at));
+        (0..F32x8::LANES).any(|l| of(l).is_some()).then(|| F32x8::from_fn(factor))
     };
-    let (kind, color, numbers) = match lobe.model {
-        Model::Diffuse { base_color } => (Kind::Diffuse, Some(base_color), numbers(&[])),
-        Model::Eon { base_color, roughness, directional } => {
-            (Kind::Eon(directional), Some(base_color), numbers(&[roughness]))
-        }
-        Model::Mirror { reflectance } => (Kind::Mirror, Some(reflectance), numbers(&[])),
-        Model::Phong { diffuse, glossy: s, exponent, norm } => {
-            (Kind::Phong(norm), Some(diffuse), numbers(&[s.r, s.g, s.b, exponent]))
-        }
-        Model::Conductor { fresnel, microfacets, compensation } => {
-            let MicrofacetSpec { distribution, masking, alpha_x: x, alpha_y: y } = microfacets;
-            let (fresnel, p) = match fresnel {
-                FresnelSpec::Conductor { eta: n, k } => (FresnelKind::Conductor, [x, y, n.r, n.g, n.b, k.r, k.g, k.b]),
-                FresnelSpec::Schlick { f0: f } => (FresnelKind::Schlick, numbers(&[x, y, f.r, f.g, f.b])),
-                FresnelSpec::F82 { f0: f, tint: t } => (FresnelKind::F82, [x, y, f.r, f.g, f.b, t.r, t.g, t.b]),
-                FresnelSpec::Dielectric { ior } => (FresnelKind::Dielectric, numbers(&[x, y, ior])),
-            };
-            (Kind::Conductor { distribution, masking, fresnel, compensation }, None, p)
-        }
-        Model::Dielectric { ior, microfacets: None } => (Kind::Dielectric, None, numbers(&[ior])),
-        Model::Dielectric { ior, microfacets: Some(microfacets) } => {
-            let MicrofacetSpec { distribution, masking, alpha_x, alpha_y } = microfacets;
-            (Kind::RoughDielectric { distribution, masking }, None, numbers(&[alpha_x, alpha_y, ior]))
-        }
-    };
-    Part { kind, color, numbers, weight: lobe.weight }
+    let mut at = 0..;
+    let lobe = constant.map(&mut |parameter, _, x| match at.next().and_then(factors) {
+        Some(factor) => parameter.quantity.clamp(x * factor),
+        None => x,
+    });
+    (weight, lobe)
 }
 
-/// The one place where scene models become kernel lobes.
-fn put_together<R: Real>(kind: Kind, color: Rgb<R>, p: [R; NUMBERS]) -> AnyLobe<R> {
-    let rgb = |at: usize| Rgb::new(p[at], p[at + 1], p[at + 2]);
-    let microfacets = |distribution| -> Microfacets<R> {
-        match distribution {
-            Distribution::Ggx => Ggx { alpha_x: p[0], alpha_y: p[1] }.into(),
-            Distribution::Beckmann => Beckmann { alpha_x: p[0], alpha_y: p[1] }.into(),
-        }
-    };
-    match kind {
-        Kind::Diffuse => Lambert::new(color).into(),
-        Kind::Eon(directional) => Eon { directional, ..Eon::new(color, p[0]) }.into(),
-        Kind::Mirror => Mirror::new(color).into(),
-        Kind::Phong(norm) => Phong { diffuse: color, glossy: rgb(0), exponent: p[3], norm }.into(),
-        Kind::Conductor { distribution, masking, fresnel, compensation } => {
-            let fresnel = match fresnel {
-                FresnelKind::Conductor => Fresnel::Conductor { eta: rgb(2), k: rgb(5) },
-                FresnelKind::Schlick => Fresnel::Schlick { f0: rgb(2) },
-                FresnelKind::F82 => Fresnel::F82 { f0: rgb(2), tint: rgb(5) },
-                FresnelKind::Dielectric => Fresnel::Dielectric { eta: p[2] },
-            };
-            let conductor = Conductor::new(microfacets(distribution), fresnel);
-            conductor.with_masking(masking).with_compensation(compensation).into()
-        }
-        Kind::Dielectric => Dielectric::new(p[0]).into(),
-        Kind::RoughDielectric { distribution, masking } => {
-            RoughDielectric::new(microfacets(distribution), p[2]).with_masking(masking).into()
-        }
+impl TexturedParameter {
+    /// Whether the number in that place is one of its channels.
+    fn covers(&self, at: usize) -> bool {
+        (self.at..self.at + 3).contains(&at)
+    }
+    fn channel(&self, color: Rgb<f32>, at: usize) -> f32 {
+        [color.r, color.g, color.b][at - self.at]
     }
 }

@@ -7,7 +7,7 @@
 use crate::environment::EnvironmentMap;
 use crate::layers::FirstHit;
 use crate::light::{PreparedSky, Techniques};
-use crate::material::lane_surface;
+use crate::material::{BatchBsdf, with_lanes};
 use crate::plan::Plan;
 use crate::point::{ShadingPoints, SurfacePoint};
 use crate::queue::{Batch, Paths, Queue, ShadowQueue};
@@ -15,10 +15,8 @@ use crate::sampler::{Purpose, Random4, Sampler};
 use crate::world::{World, splat_rgb};
 use gonio_accel::Ray8;
 use gonio_kernel::frame::on_its_side;
-use gonio_kernel::lobe::Lobe;
-use gonio_kernel::surface::Weighted;
 use gonio_kernel::warp::{pdf_cosine_hemisphere, sample_cosine_hemisphere, sample_uniform_triangle};
-use gonio_kernel::{Closure, F32x8, Mask, Mask8, Real, Rgb, Surface, U32x8, Vec3, each_lane};
+use gonio_kernel::{BsdfSample, F32x8, Mask, Mask8, Real, Rgb, U32x8, Vec3, each_lane};
 
 /// Shadow rays stop this much short of the light, relative to its distance: the rounding of the distance and of t.
 pub const SHORT_OF_LIGHT: f32 = 1.0 - 16.0 / 16_777_216.0;
@@ -128,21 +126,29 @@ pub(crate) fn hit(
     }
     let materials = each_lane(|l| &ctx.world.materials[points.material[l] as usize]);
     let alike = points.material.iter().all(|&m| m == points.material[0]);
-    let looked_up;
-    let surface = match &materials[0].surface {
-        Some(surface) if alike => surface,
-        _ => {
-            looked_up = lane_surface(materials, &ctx.world.textures, points.uv);
-            &looked_up
-        }
-    };
+    with_lanes(materials, alike, &ctx.world.textures, points.uv, |bsdf| {
+        shade(ctx, depth, batch, &incoming, &points, bsdf, first, shadow, next)
+    })
+}
+
+/// Light sample and scattering by one BSDF. Returns how many lanes it was evaluated for.
+fn shade(
+    ctx: &Context,
+    depth: u32,
+    batch: &Batch,
+    incoming: &Incoming,
+    points: &ShadingPoints,
+    bsdf: &dyn BatchBsdf,
+    first: &mut [FirstHit],
+    shadow: &mut ShadowQueue,
+    next: &mut Queue,
+) -> u32 {
     if !first.is_empty() {
-        note_first_hit(ctx, batch, &incoming, &points, surface, first);
+        note_first_hit(ctx, batch, incoming, points, bsdf.albedo(), first);
     }
     if depth >= ctx.max_depth {
         return 0;
     }
-
     let mut live = batch.live;
     if ctx.plan.one_sided {
         let two_sided = points
@@ -156,45 +162,24 @@ pub(crate) fn hit(
         return 0;
     }
 
-    let local = points.frame.to_local(wo);
-    let closure = Closure::new(surface, local);
+    let wo = points.frame.to_local(-incoming.dir);
     let origin = points.point.off_plane(points.normal);
+    let light = sample_lights(ctx, depth, live, incoming, points, origin);
+    let u = ctx.sampler.draw(incoming.pixel, incoming.sample, depth, Purpose::Scatter);
+    let wi = light.as_ref().map(|light| points.frame.to_local(light.wi));
+    let scattered = bsdf.scatter(wo, wi, [u.unit(0), u.unit(1), u.unit(2)]);
 
-    let lights = &ctx.world.lights;
-    if (ctx.plan.area_lights || ctx.plan.environment) && ctx.techniques != Techniques::Scattering {
-        let u = ctx.sampler.draw(incoming.pixel, incoming.sample, depth, Purpose::Light);
-        let toss = u.unit(0);
-        let p_environment = F32x8::splat(lights.environment_probability());
-        let ask_environment = toss.lt(p_environment);
-        // The toss within the chosen strategy decides the emitter's alias; below 1 even after rounding.
-        let rest = ((toss - p_environment) / (F32x8::ONE - p_environment)).min(F32x8::splat(0.999_999_94));
-        for (kind, mask) in [(true, live & ask_environment), (false, live & !ask_environment)] {
-            let wanted = if kind { ctx.plan.environment } else { ctx.plan.area_lights };
-            if !wanted || !mask.any() {
-                continue;
-            }
-            let place = [u.unit(2), u.unit(3)];
-            let asked = match (kind, lights.shining_sky()) {
-                (false, _) => ask_emitter(ctx, &points, origin, u.0[1], rest, place),
-                (true, None) => continue,
-                (true, Some(PreparedSky::Constant(sky))) => ask_sky(*sky, &points, place, p_environment),
-                (true, Some(PreparedSky::Map(map))) => {
-                    let place = ctx.sampler.draw(incoming.pixel, incoming.sample, depth, Purpose::Environment);
-                    ask_map(map, &u, &place, p_environment)
-                }
-            };
-            let wi = points.frame.to_local(asked.wi);
-            let value = closure.eval(wi);
-            let weight = ctx.techniques.weight(Techniques::Lights, asked.pdf, value.pdf) / asked.pdf;
-            let arriving = incoming.throughput * value.f_cos * asked.radiance * weight;
-            let (origin, right_side) = leaving(ctx, &points, origin, asked.wi, local.z * wi.z);
-            let mask = mask & asked.mask & right_side & arriving.largest().gt(F32x8::ZERO);
-            if mask.any() {
-                shadow.push(mask, (origin, asked.wi, asked.t_max), arriving, &incoming.path);
-            }
+    if let (Some(light), Some(wi)) = (light, wi) {
+        let value = scattered.light;
+        let weight = ctx.techniques.weight(Techniques::Lights, light.pdf, value.pdf) / light.pdf;
+        let arriving = incoming.throughput * value.f_cos * light.radiance * weight;
+        let (origin, right_side) = leaving(ctx, points, origin, light.wi, wo.z * wi.z);
+        let mask = light.mask & right_side & arriving.largest().gt(F32x8::ZERO);
+        if mask.any() {
+            shadow.push(mask, (origin, light.wi, light.t_max), arriving, &incoming.path);
         }
     }
-    scatter(ctx, depth, live, &incoming, &points, &closure, local, origin, next);
+    go_on(ctx, depth, live, incoming, points, &scattered.sample, (wo, origin, u.unit(3)), next);
     live.to_bits().count_ones()
 }
 
@@ -205,11 +190,9 @@ fn note_first_hit(
     batch: &Batch,
     incoming: &Incoming,
     points: &ShadingPoints,
-    surface: &Surface<F32x8>,
+    albedo: Rgb<F32x8>,
     first: &mut [FirstHit],
 ) {
-    let along_normal = |sum: Rgb<F32x8>, l: &Weighted<F32x8>| sum + l.lobe.albedo_estimate(Vec3::unit_z()) * l.weight;
-    let albedo = surface.lobes().fold(Rgb::zero(), along_normal).map(|x| x.min(F32x8::ONE));
     let depth = points.t * incoming.dir.dot(Vec3::broadcast(ctx.world.view.forward));
     let lanes = |v: [F32x8; 3], l: usize| v.map(|x| x.lane(l));
     for l in (0..F32x8::LANES).filter(|l| batch.live.to_bits() >> l & 1 != 0) {
@@ -263,20 +246,83 @@ fn leaving(
     (start, on_its_side(points.normal, wi, sides.lt(F32x8::ZERO)))
 }
 
-/// A direction in which light is asked for.
-struct Asked {
+/// A direction in which light may arrive.
+struct LightSample {
     wi: Vec3<F32x8>,
+    /// Per solid angle, the choice between lights included.
     pdf: F32x8,
     radiance: Rgb<F32x8>,
+    /// How far the shadow ray goes.
     t_max: F32x8,
+    /// Where there is one.
     mask: Mask8,
+}
+
+impl LightSample {
+    fn select(mask: Mask8, yes: Self, no: Self) -> Self {
+        Self {
+            wi: Vec3::select(mask, yes.wi, no.wi),
+            pdf: F32x8::select(mask, yes.pdf, no.pdf),
+            radiance: Rgb::select(mask, yes.radiance, no.radiance),
+            t_max: F32x8::select(mask, yes.t_max, no.t_max),
+            mask: (mask & yes.mask) | (!mask & no.mask),
+        }
+    }
+}
+
+/// One light sample for each live lane: of the environment or of an emitter. None if no lane has one.
+#[inline(always)]
+fn sample_lights(
+    ctx: &Context,
+    depth: u32,
+    live: Mask8,
+    incoming: &Incoming,
+    points: &ShadingPoints,
+    origin: Vec3<F32x8>,
+) -> Option<LightSample> {
+    let lights = &ctx.world.lights;
+    if !(ctx.plan.area_lights || ctx.plan.environment) || ctx.techniques == Techniques::Scattering {
+        return None;
+    }
+    let u = ctx.sampler.draw(incoming.pixel, incoming.sample, depth, Purpose::Light);
+    let u_select = u.unit(0);
+    let u_position = [u.unit(2), u.unit(3)];
+    let p_environment = F32x8::splat(lights.environment_probability());
+    let environment = u_select.lt(p_environment);
+    let from_sky = match lights.shining_sky() {
+        Some(sky) if ctx.plan.environment && (live & environment).any() => Some(match sky {
+            PreparedSky::Constant(sky) => sample_environment(*sky, points, u_position, p_environment),
+            PreparedSky::Map(map) => {
+                let u_position = ctx.sampler.draw(incoming.pixel, incoming.sample, depth, Purpose::Environment);
+                sample_map(map, &u, &u_position, p_environment)
+            }
+        }),
+        _ => None,
+    };
+    let from_emitter = (ctx.plan.area_lights && (live & !environment).any()).then(|| {
+        // What is left of the number within the chosen strategy decides the emitter's alias; below 1 even after rounding.
+        let rest = ((u_select - p_environment) / (F32x8::ONE - p_environment)).min(F32x8::splat(0.999_999_94));
+        sample_emitter(ctx, points, origin, u.0[1], rest, u_position)
+    });
+    let sample = match (from_sky, from_emitter) {
+        (Some(sky), Some(emitter)) => LightSample::select(environment, sky, emitter),
+        (Some(sky), None) => LightSample { mask: sky.mask & environment, ..sky },
+        (None, Some(emitter)) => LightSample { mask: emitter.mask & !environment, ..emitter },
+        (None, None) => return None,
+    };
+    Some(LightSample { mask: sample.mask & live, ..sample })
 }
 
 /// A cosine-distributed direction of a constant environment.
 #[inline(always)]
-fn ask_sky(radiance: Rgb<f32>, points: &ShadingPoints, place: [F32x8; 2], probability: F32x8) -> Asked {
-    let local = sample_cosine_hemisphere(place);
-    Asked {
+fn sample_environment(
+    radiance: Rgb<f32>,
+    points: &ShadingPoints,
+    u_position: [F32x8; 2],
+    probability: F32x8,
+) -> LightSample {
+    let local = sample_cosine_hemisphere(u_position);
+    LightSample {
         wi: points.frame.to_world(local),
         pdf: pdf_cosine_hemisphere(local) * probability,
         radiance: splat_rgb(radiance),
@@ -285,12 +331,12 @@ fn ask_sky(radiance: Rgb<f32>, points: &ShadingPoints, place: [F32x8; 2], probab
     }
 }
 
-/// A direction of a map by its luminance; `toss` are the numbers of the choice between lights, of which it uses the free ones.
+/// A direction of a map by its luminance; `u_select` are the numbers of the choice between lights, of which it uses the free ones.
 #[inline(always)]
-fn ask_map(map: &EnvironmentMap, toss: &Random4, place: &Random4, probability: F32x8) -> Asked {
-    let wi = map.sample(place, [toss.0[1], toss.0[2]]);
+fn sample_map(map: &EnvironmentMap, u_select: &Random4, u_position: &Random4, probability: F32x8) -> LightSample {
+    let wi = map.sample(u_position, [u_select.0[1], u_select.0[2]]);
     let seen = map.at(wi);
-    Asked {
+    LightSample {
         wi,
         pdf: seen.pdf * probability,
         radiance: seen.radiance,
@@ -301,17 +347,17 @@ fn ask_map(map: &EnvironmentMap, toss: &Random4, place: &Random4, probability: F
 
 /// A uniform point of an emitting triangle chosen by power.
 #[inline(always)]
-fn ask_emitter(
+fn sample_emitter(
     ctx: &Context,
     points: &ShadingPoints,
     origin: Vec3<F32x8>,
     slot: U32x8,
-    toss: F32x8,
-    place: [F32x8; 2],
-) -> Asked {
-    let emitters = ctx.world.lights.pick(slot, toss);
+    u_select: F32x8,
+    u_position: [F32x8; 2],
+) -> LightSample {
+    let emitters = ctx.world.lights.pick(slot, u_select);
     let normal = emitters.normal;
-    let target = SurfacePoint::new(&emitters.corners, sample_uniform_triangle(place)).off_plane(normal);
+    let target = SurfacePoint::new(&emitters.corners, sample_uniform_triangle(u_position)).off_plane(normal);
     // The ray starts on the side where the light is.
     let start = if ctx.plan.transmission {
         let beside = points.normal.dot(target - points.point.position).lt(F32x8::ZERO);
@@ -325,7 +371,7 @@ fn ask_emitter(
     let wi = to * distance.recip();
     let cos = -normal.dot(wi);
     let pdf_area = emitters.radiance.luminance() * F32x8::splat(ctx.world.lights.pdf_area_per_luminance());
-    Asked {
+    LightSample {
         wi,
         pdf: pdf_area * distance2 / cos,
         radiance: emitters.radiance,
@@ -334,37 +380,26 @@ fn ask_emitter(
     }
 }
 
-/// Chooses how the paths go on, and writes the rays of the next bounce.
+/// Writes the rays of the next bounce.
 #[inline(always)]
-fn scatter(
+fn go_on(
     ctx: &Context,
     depth: u32,
     live: Mask8,
     incoming: &Incoming,
     points: &ShadingPoints,
-    closure: &Closure<F32x8>,
-    local: Vec3<F32x8>,
-    origin: Vec3<F32x8>,
+    sample: &BsdfSample<F32x8>,
+    (wo, origin, u_roulette): (Vec3<F32x8>, Vec3<F32x8>, F32x8),
     next: &mut Queue,
 ) {
-    let u = ctx.sampler.draw(incoming.pixel, incoming.sample, depth, Purpose::Scatter);
-    let sample = closure.sample([u.unit(0), u.unit(1), u.unit(2)]);
-    let mut value = closure.eval(sample.wi);
-    let mut continuous = live;
-    if ctx.plan.discrete && (sample.event.discrete & live).any() {
-        let discrete = closure.discrete(&sample.event);
-        value.f_cos = Rgb::select(sample.event.discrete, discrete.f_cos, value.f_cos);
-        value.pdf = F32x8::select(sample.event.discrete, discrete.pdf, value.pdf);
-        continuous = live & !sample.event.discrete;
-    }
     let wi = points.frame.to_world(sample.wi);
-    let (origin, right_side) = leaving(ctx, points, origin, wi, local.z * sample.wi.z);
-    let mut alive = live & !sample.event.failed & right_side & value.pdf.gt(F32x8::ZERO);
-    let mut throughput = incoming.throughput * value.f_cos * value.pdf.recip();
+    let (origin, right_side) = leaving(ctx, points, origin, wi, wo.z * sample.wi.z);
+    let mut alive = live & !sample.event.failed & right_side;
+    let mut throughput = incoming.throughput * sample.f_cos * sample.pdf.recip();
     alive = alive & throughput.largest().gt(F32x8::ZERO);
     if ctx.russian_roulette && depth + 1 >= ROULETTE_FROM {
         let q = throughput.luminance().min(F32x8::lit(ROULETTE_CAP));
-        alive = alive & u.unit(3).lt(q);
+        alive = alive & u_roulette.lt(q);
         throughput = throughput * q.recip();
     }
     if alive.any() {
@@ -380,7 +415,7 @@ fn scatter(
             Ray8 { mask: alive, ..Ray8::new(origin, wi) },
             Paths {
                 throughput,
-                pdf: value.pdf.or_zero(continuous),
+                pdf: sample.pdf.or_zero(!sample.event.is_delta),
                 pdf_environment,
                 path: U32x8::new(incoming.path),
                 pixel: incoming.pixel,

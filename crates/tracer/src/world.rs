@@ -132,7 +132,7 @@ impl World {
         let refuse = |message: String| SceneError::file(Path::new("scene"), message);
         let center = center(&scene.instances, &meshes);
         let mut warnings = Vec::new();
-        let (materials, order) = PreparedMaterial::prepare(scene);
+        let (materials, order) = PreparedMaterial::prepare(scene).map_err(refuse)?;
         let mut plan = Plan {
             area_lights: false,
             environment: false,

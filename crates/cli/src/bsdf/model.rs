@@ -1,6 +1,7 @@
 //! A surface as plain numbers in `f64`, whatever arithmetic computes inside: one at a time or eight side by side.
 
-use gonio_kernel::{Closure, F32x8, Mask8, Real, Rgb, Surface, Value, Vec3};
+use gonio_kernel::{Closure, F32x8, Mask8, Real, Rgb, Value, Vec3};
+use gonio_tracer::MaterialSurface;
 
 /// A local direction.
 pub(super) type Direction = [f64; 3];
@@ -98,7 +99,7 @@ impl Packed for F32x8 {
     }
 }
 
-impl<R: Packed> Model for Surface<R> {
+impl<R: Packed> Model for MaterialSurface<R> {
     fn eval(&self, pairs: &[[Direction; 2]]) -> Vec<Answer> {
         let mut answers = Vec::with_capacity(pairs.len());
         for group in pairs.chunks(R::COUNT) {
@@ -116,17 +117,11 @@ impl<R: Packed> Model for Surface<R> {
         for group in u.chunks(R::COUNT) {
             let column = |axis: usize| R::pack(|i| group.get(i).map_or(0.0, |u| u[axis]));
             let sample = closure.sample([column(0), column(1), column(2)]);
-            let continuous = closure.eval(sample.wi);
-            let discrete = closure.discrete(&sample.event);
-            let value = Value {
-                f_cos: Rgb::select(sample.event.discrete, discrete.f_cos, continuous.f_cos),
-                pdf: R::select(sample.event.discrete, discrete.pdf, continuous.pdf),
-            };
-            let possible = value.pdf.gt(R::ZERO);
-            let weight = value.f_cos.map(|f| (f / value.pdf).or_zero(possible));
+            let value = Value { f_cos: sample.f_cos, pdf: sample.pdf };
+            let weight = sample.weight;
             for i in 0..group.len() {
                 let event = &sample.event;
-                let happening = match (R::truth(event.discrete, i), R::truth(event.transmitted, i)) {
+                let happening = match (R::truth(event.is_delta, i), R::truth(event.transmitted, i)) {
                     _ if R::truth(event.failed, i) => Happening::Failed,
                     (false, false) => Happening::Reflect,
                     (false, true) => Happening::Transmit,
@@ -164,9 +159,10 @@ mod tests {
     use super::*;
     use gonio_kernel::lobe::{Lambert, Mirror};
 
-    fn surface<R: Real>() -> Surface<R> {
-        let half = R::lit(0.5);
-        Surface::black().with(half, Lambert::new(Rgb::splat(R::lit(0.8)))).with(half, Mirror::new(Rgb::splat(R::ONE)))
+    fn surface<R: Real>() -> MaterialSurface<R> {
+        let (half, lambert) = (R::lit(0.5), Lambert::new(Rgb::splat(R::lit(0.8))));
+        let surface = MaterialSurface::empty().with(half, lambert);
+        surface.and_then(|surface| surface.with(half, Mirror::new(Rgb::splat(R::ONE)))).expect("there is room for two")
     }
 
     #[test]

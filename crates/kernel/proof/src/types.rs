@@ -2,38 +2,51 @@
 
 use crate::{colour, direction, lobes, some};
 use core::hint::black_box;
-use gonio_kernel::lobe::AnyLobe;
+use gonio_kernel::lobe::{AnyLobe, Layering, Lobe};
+use gonio_kernel::surface::SurfaceError;
 use gonio_kernel::units::{Area, Flux, Radiance, SolidAngle};
 use gonio_kernel::{
-    Closure, Event, F32x8, Frame, Mask, Mask8, Rgb, Sample, Surface, U32x8, Value, Vec3,
-    closure::{Transport, Unguarded},
+    BsdfSample, Closure, F32x8, Frame, Mask, Mask8, Parameters, Properties, Rgb, Sample, Surface, Transport, U32x8, Value, Vec3,
+    closure::Unguarded,
 };
 
 macro_rules! types {
     ($real:ident) => {{
         type R = $real;
 
+        /// Twelve lobes, three of them coats.
+        type Many = Surface<R, AnyLobe<'static, R>, 12, 3>;
+
         #[unsafe(export_name = concat!("Surface_", stringify!($real)))]
         #[inline(never)]
-        fn surface(weight: R, lobes: &[AnyLobe<R>]) -> (Surface<R>, bool) {
-            let surface = lobes.iter().fold(Surface::black(), |surface, &lobe| surface.with(weight, lobe));
-            (surface, surface.is_full())
+        fn surface(weight: Rgb<R>, lobes: &[Option<AnyLobe<'static, R>>]) -> Result<Many, SurfaceError> {
+            let layering = if black_box(true) { Layering::Reciprocal } else { Layering::FurnacePreserving };
+            lobes.iter().flatten().try_fold(Many::empty(), |surface, &lobe| match black_box(true) {
+                true => surface.coat(weight, lobe, layering),
+                false => surface.with(weight, lobe),
+            })
         }
 
         #[unsafe(export_name = concat!("Closure_", stringify!($real)))]
         #[inline(never)]
-        fn closure(surface: &Surface<R>, wo: Vec3<R>, wi: Vec3<R>, u: [R; 3]) -> (Value<R>, Sample<R>, Value<R>) {
+        fn closure(surface: &Many, wo: Vec3<R>, wi: Vec3<R>, u: [R; 3]) -> (Value<R>, BsdfSample<R>) {
             let transport = if black_box(true) { Transport::Radiance } else { Transport::Importance };
-            let closure = Closure::new(surface, wo).carrying(transport);
-            let sample = closure.sample(u);
-            (closure.eval(wi), sample, closure.discrete(&sample.event))
+            let closure = Closure::with_transport(surface, wo, transport);
+            (closure.eval(wi), closure.sample(u))
         }
 
         #[unsafe(export_name = concat!("Unguarded_", stringify!($real)))]
         #[inline(never)]
-        fn unguarded(surface: &Surface<R>, wo: Vec3<R>, wi: Vec3<R>, event: &Event<R>) -> (Value<R>, Value<R>) {
-            let mixture = Unguarded::new(surface, wo);
-            (mixture.eval(wi), mixture.discrete(event))
+        fn unguarded(surface: &Many, wo: Vec3<R>, wi: Vec3<R>, sample: &Sample<R>) -> (Value<R>, Value<R>) {
+            let mixture = Unguarded::new(surface, wo, Transport::Radiance);
+            (mixture.eval(wi), mixture.delta(sample))
+        }
+
+        #[unsafe(export_name = concat!("Surface_claims_", stringify!($real)))]
+        #[inline(never)]
+        fn claims(surface: &Many, wo: Vec3<R>) -> (Properties<R>, R, R, Many) {
+            let same = surface.map(&mut |parameter, _, x| parameter.quantity.clamp(x));
+            (surface.properties(), surface.largest_weight(wo), surface.radiance_scale(wo), same)
         }
 
         #[unsafe(export_name = concat!("Frame_", stringify!($real)))]
@@ -55,9 +68,11 @@ macro_rules! types {
         }
 
         let (wo, wi) = (direction(0.6, 0.0, 0.8), direction(0.0, -0.6, 0.8));
-        let (surface, _) = black_box(surface(some(0.3), black_box(&lobes::examples())));
-        let (_, sample, _) = black_box(closure(&surface, wo, wi, [some(0.1), some(0.5), some(0.9)]));
-        black_box(unguarded(&surface, wo, wi, &sample.event));
+        if let Ok(surface) = black_box(surface(colour(0.3), black_box(&lobes::examples()))) {
+            let (_, sample) = black_box(closure(&surface, wo, wi, [some(0.1), some(0.5), some(0.9)]));
+            black_box(unguarded(&surface, wo, wi, &Sample { wi: sample.wi, event: sample.event }));
+            black_box(claims(&surface, wo));
+        }
         black_box(frame(wo, wi, direction(1.0, 2.0, 3.0)));
         black_box(rgb(colour(0.5), colour(0.2)));
         black_box(units(Flux(some(1.0)), SolidAngle(some(2.0)), Area(some(3.0)), Radiance(colour(0.5))));

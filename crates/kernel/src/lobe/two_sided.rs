@@ -4,6 +4,7 @@
 
 use super::{Lobe, Properties, Sample, Transport, Value};
 use crate::frame::turned;
+use crate::model::{Entry, Parameter, Parameters, Source};
 use crate::real::Real;
 use crate::rgb::Rgb;
 use crate::vec3::Vec3;
@@ -61,6 +62,33 @@ impl<R: Real, L: Lobe<R>> Lobe<R> for TwoSided<L> {
     #[inline(always)]
     fn properties(&self) -> Properties<R> {
         self.0.properties()
+    }
+}
+
+impl<L: Parameters> Parameters for TwoSided<L> {
+    type Real = L::Real;
+    type Of<S: Real> = TwoSided<L::Of<S>>;
+    const ENTRIES: &'static [Entry] = L::ENTRIES;
+
+    #[inline(always)]
+    fn map<S: Real>(&self, f: &mut impl FnMut(&'static Parameter, usize, L::Real) -> S) -> Self::Of<S> {
+        TwoSided(self.0.map(f))
+    }
+    #[cfg(feature = "wide")]
+    #[inline(always)]
+    fn gather(lanes: [&Self::Of<f32>; 8]) -> Self::Of<crate::F32x8> {
+        TwoSided(L::gather(crate::each_lane(|i| &lanes[i & 7].0)))
+    }
+    #[inline(always)]
+    fn same_code(&self, other: &Self) -> bool {
+        self.0.same_code(&other.0)
+    }
+    #[inline(always)]
+    fn in_domain(&self) -> <L::Real as Real>::Mask {
+        self.0.in_domain()
+    }
+    fn read<S: Source<L::Real>>(source: &mut S) -> Result<Self, S::Error> {
+        L::read(source).map(Self)
     }
 }
 

@@ -37,6 +37,11 @@ impl<R: Real> Ggx<R> {
         let Alpha(alpha) = alpha.into();
         Self { alpha_x: alpha, alpha_y: alpha }
     }
+    /// Along tangent and bitangent, by alpha or by a user's roughness.
+    #[inline(always)]
+    pub fn new(x: impl Into<Alpha<R>>, y: impl Into<Alpha<R>>) -> Self {
+        Self { alpha_x: x.into().0, alpha_y: y.into().0 }
+    }
 
     /// D of the normal along h (any length, h.z ≥ 0), with |h|² given \[1/sr\].
     #[inline(always)]

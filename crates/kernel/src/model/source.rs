@@ -69,3 +69,31 @@ pub trait Source<R: Real> {
         }
     }
 }
+
+/// Usual values: see [`super::Parameters::typical`].
+#[derive(Debug)]
+pub(super) struct Typical;
+
+impl<R: Real> Source<R> for Typical {
+    type Error = ();
+
+    fn model(&self) -> &str {
+        ""
+    }
+    fn has(&self, _key: &str) -> bool {
+        false
+    }
+    fn number(&mut self, parameter: &'static Parameter) -> Result<Option<R>, ()> {
+        Ok(Some(R::lit(parameter.default.unwrap_or(parameter.quantity.typical))))
+    }
+    fn color(&mut self, parameter: &'static Parameter) -> Result<Option<Rgb<R>>, ()> {
+        Source::<R>::number(self, parameter).map(|x| x.map(Rgb::splat))
+    }
+    fn word(&mut self, _words: &'static Words) -> Result<Option<usize>, ()> {
+        Ok(Some(0))
+    }
+    fn refuse(&mut self, _problem: Problem) {}
+    fn way(&mut self, _ways: &'static [&'static [Entry]]) -> Result<usize, ()> {
+        Ok(0)
+    }
+}

@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 
 use glam::{DAffine3, DVec3};
 use gonio_kernel::Rgb;
+use gonio_kernel::lobe::Lambert;
 
 use super::mtl::Library;
 use super::obj::{self, ObjFile};
 use super::textures::Textures;
 use super::{
-    Camera, Color, Environment, FilmSettings, Instance, IntegratorSettings, Loading, LobeSpec, Material, Mesh, Model,
-    Scene, SceneError, Stage, paths,
+    Camera, Environment, FilmSettings, Instance, IntegratorSettings, Loading, LobeSpec, Material, Mesh, Scene, SceneError, Stage, paths,
 };
 
 /// Largest number of materials: an index fits sixteen bits.
@@ -282,11 +282,7 @@ impl Builder {
         if let Some(grey) = self.grey {
             return Ok(grey);
         }
-        let base_color = Color::Constant(Rgb::splat(GREY));
-        let lobes = vec![LobeSpec { weight: 1.0, model: Model::Diffuse { base_color } }];
-        let black = Rgb::splat(0.0);
-        let grey =
-            self.add(Material { name: "grey".to_owned(), lobes, emission: black, two_sided: true, normal_map: None })?;
+        let grey = self.add(Material::new("grey", vec![LobeSpec::new(Lambert::new(Rgb::splat(GREY)))]))?;
         self.grey = Some(grey);
         Ok(grey)
     }

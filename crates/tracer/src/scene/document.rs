@@ -56,9 +56,22 @@ impl<'d> Table<'d> {
 
     /// The value of a key, if it is there.
     pub(super) fn get(&self, key: &'static str) -> Option<Value<'d>> {
-        self.known.borrow_mut().push(key);
+        self.know(key);
         let item = self.entries.get(key)?;
         Some(Value { document: self.document, name: key.to_owned(), item })
+    }
+
+    /// Whether a key is there.
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.entries.contains_key(key)
+    }
+
+    /// A key that may be there: [`Table::finish`] names it and does not refuse it.
+    pub(super) fn know(&self, key: &'static str) {
+        let mut known = self.known.borrow_mut();
+        if !known.contains(&key) {
+            known.push(key);
+        }
     }
 
     /// All entries in the order of the file, for tables whose keys are names.
@@ -163,11 +176,15 @@ impl<'d> Value<'d> {
 
     /// A colour: three numbers, or one for all channels.
     pub(super) fn rgb(&self, range: RangeInclusive<f64>) -> Result<Rgb<f32>, SceneError> {
+        self.rgb_f64(range).map(|color| color.map(|x| x as f32))
+    }
+
+    /// A colour as it is written.
+    pub(super) fn rgb_f64(&self, range: RangeInclusive<f64>) -> Result<Rgb<f64>, SceneError> {
         if let DeValue::Integer(_) | DeValue::Float(_) = self.item.get_ref() {
-            return self.number(range).map(|value| Rgb::splat(value as f32));
+            return self.number(range).map(Rgb::splat);
         }
-        let [r, g, b] = self.numbers(range)?;
-        Ok(Rgb::new(r as f32, g as f32, b as f32))
+        self.numbers(range).map(|numbers: [f64; 3]| Rgb::from(numbers))
     }
 
     /// A point or vector.

@@ -3,6 +3,10 @@
 use std::path::Path;
 
 use super::*;
+use gonio_kernel::energy::Compensation;
+use gonio_kernel::fresnel::Fresnel;
+use gonio_kernel::lobe::{Conductor, Dielectric, EonAlbedo, Lambert, Layering, PhongNormalization};
+use gonio_kernel::microfacet::Distribution;
 
 fn read_text(text: &str) -> Result<Material, String> {
     Material::from_toml_str(text, Path::new("dir/brass.toml")).map_err(|error| error.to_string())
@@ -17,18 +21,16 @@ fn an_empty_material_is_a_light_grey_diffuser_named_after_its_file() {
     let material = read_text("").unwrap();
     assert_eq!(material.name, "brass");
     assert!(material.two_sided);
-    let base_color = Color::Constant(Rgb::splat(0.8));
-    assert_eq!(material.lobes, [LobeSpec { weight: 1.0, model: Model::Diffuse { base_color } }]);
+    assert_eq!(material.lobes, [LobeSpec::new(Lambert::new(Rgb::splat(0.8)))]);
 }
 
 #[test]
 fn a_conductor_takes_any_one_spelling_of_its_width() {
     let widths = |text: &str| {
         let material = read_text(&format!("type = \"conductor\"\nf0 = [0.9, 0.6, 0.3]\n{text}")).unwrap();
-        match material.lobes[0].model {
-            Model::Conductor { microfacets, .. } => (microfacets.alpha_x, microfacets.alpha_y),
-            ref other => panic!("{other:?}"),
-        }
+        let AnyLobe::Conductor(conductor) = material.lobes[0].lobe else { panic!("{material:?}") };
+        let [alpha_x, alpha_y] = conductor.microfacets.alphas();
+        (alpha_x, alpha_y)
     };
     assert_eq!(widths("roughness = 0.5"), (0.25, 0.25));
     assert_eq!(widths("alpha = 0.5"), (0.5, 0.5));
@@ -42,7 +44,7 @@ fn a_mix_adds_its_lobes() {
                 { type = \"mirror\", weight = 0.5 },\n]\n";
     let material = read_text(text).unwrap();
     assert_eq!(material.lobes.len(), 2);
-    assert_eq!((material.lobes[1].weight, material.emission.g, material.two_sided), (0.5, 2.0, false));
+    assert_eq!((material.lobes[1].weight.g, material.emission.g, material.two_sided), (0.5, 2.0, false));
 }
 
 #[test]
@@ -66,32 +68,34 @@ fn refusals_name_the_line_and_what_would_be_right() {
     let cases = [
         (
             "type = \"conductor\"\nf0 = 1\neta = 1\nk = 1",
-            "dir/brass.toml:1: a conductor needs one of \"f0\" (with \"f82\" if wanted), both \"eta\" and \"k\", \"metal\", or \"ior\"",
+            "dir/brass.toml:1: the material needs one of \"eta\" with \"k\", \"f0\", \"f0\" with \"f82\", \"ior\", or \"metal\"",
         ),
         (
             "type = \"conductor\"\neta = 1",
-            "dir/brass.toml:1: a conductor needs one of \"f0\" (with \"f82\" if wanted), both \"eta\" and \"k\", \"metal\", or \"ior\"",
+            "dir/brass.toml:1: the material needs one of \"eta\" with \"k\", \"f0\", \"f0\" with \"f82\", \"ior\", or \"metal\"",
         ),
         (
             "type = \"conductor\"\nf0 = 1\nalpha = 0.1\nroughness = 0.1",
-            "dir/brass.toml:1: give one of \"roughness\", \"alpha\", or \"alpha_x\" with \"alpha_y\"",
+            "dir/brass.toml:1: the material needs one of \"alpha_x\" with \"alpha_y\", \"alpha\", or \"roughness\"",
         ),
         (
             "type = \"conductor\"\nf0 = 1\nalpha = 1e-9",
-            "dir/brass.toml:3: \"alpha\" gives an alpha below 1e-8: use type = \"mirror\", or a dielectric without roughness",
+            "dir/brass.toml:3: \"alpha\" must be a number from 0.00000001 to 1, not 1e-9; what is smooth is a \"mirror\", a \
+             \"smooth-conductor\" or a \"dielectric\" without roughness",
         ),
         (
             "type = \"conductor\"\nf0 = 1\nalpha = 1.1",
-            "dir/brass.toml:3: \"alpha\" must be a number from 0 to 1, not 1.1",
+            "dir/brass.toml:3: \"alpha\" must be a number from 0.00000001 to 1, not 1.1",
         ),
         ("emission = [1, 1]", "dir/brass.toml:1: \"emission\" must be 3 numbers, not an array of 2"),
         ("\nemission = 2e6", "dir/brass.toml:2: \"emission\" must be a number from 0 to 1000000, not 2e6"),
         ("two_sided = 1", "dir/brass.toml:1: \"two_sided\" must be true or false, not 1"),
         ("type = \"mix\"", "dir/brass.toml:1: a mix needs \"lobes\", an array of tables"),
-        ("type = \"mix\"\nlobes = []", "dir/brass.toml:2: a mix has 1 to 4 lobes, not 0"),
+        ("type = \"mix\"\nlobes = []", "dir/brass.toml:2: a mix has 1 to 12 lobes, not 0"),
         (
             "type = \"mix\"\nlobes = [\n{ type = \"mix\" }]",
-            "dir/brass.toml:3: type \"mix\" is not possible here; known are \"diffuse\", \"eon\", \"mirror\", \"phong\", \"conductor\", \"dielectric\", \"mix\"",
+            "dir/brass.toml:3: type \"mix\" is not possible here; known are \"diffuse\", \"mirror\", \"conductor\", \"smooth-conductor\", \
+             \"dielectric\", \"phong\", \"eon\", \"mix\", \"layered\"",
         ),
         (
             "type = \"mix\"\nlobes = [\n{ type = \"mirror\",\n alpha = 1 }]",
@@ -107,40 +111,77 @@ fn refusals_name_the_line_and_what_would_be_right() {
 
 #[test]
 fn every_type_has_defaults_and_its_own_keys() {
-    let model = |text: &str| read_text(text).unwrap_or_else(|error| panic!("{text}: {error}")).lobes[0].model.clone();
-    assert!(matches!(
-        model("type = \"eon\"\nalbedo = \"fitted\""),
-        Model::Eon { directional: Directional::Fitted, .. }
-    ));
-    assert!(matches!(model("type = \"phong\""), Model::Phong { norm: PhongNorm::Lafortune, .. }));
-    assert!(matches!(model("type = \"dielectric\""), Model::Dielectric { ior: 1.5, microfacets: None }));
-    let rough = model("type = \"dielectric\"\nior = 1.33\nroughness = 0.5\ndistribution = \"beckmann\"");
-    let Model::Dielectric { microfacets: Some(microfacets), .. } = rough else { panic!("{rough:?}") };
-    assert_eq!((microfacets.distribution, microfacets.alpha_x), (Distribution::Beckmann, 0.25));
-    let gold = model("type = \"conductor\"\nmetal = \"gold\"\ncompensation = \"kulla-conty\"");
+    let lobe = |text: &str| read_text(text).unwrap_or_else(|error| panic!("{text}: {error}")).lobes[0].lobe;
+    for word in ["fitted", "exact", "analytic"] {
+        let AnyLobe::Eon(eon) = lobe(&format!("type = \"eon\"\nalbedo = \"{word}\"")) else { panic!() };
+        assert_eq!(eon.directional == EonAlbedo::Fitted, word == "fitted");
+    }
+    for (word, normalization) in [
+        ("", PhongNormalization::LafortuneWillems),
+        ("normalization = \"lafortune\"", PhongNormalization::LafortuneWillems),
+        ("normalization = \"lecture\"", PhongNormalization::Modified),
+    ] {
+        let AnyLobe::Phong(phong) = lobe(&format!("type = \"phong\"\n{word}")) else { panic!() };
+        assert_eq!((phong.normalization, phong.diffuse.g, phong.exponent), (normalization, 0.5, 30.0));
+    }
+    assert_eq!(lobe("type = \"dielectric\""), Dielectric::new(1.5).into());
+    let rough = lobe("type = \"dielectric\"\nior = 1.33\nroughness = 0.5\ndistribution = \"beckmann\"");
+    let AnyLobe::RoughDielectric(rough) = rough else { panic!("{rough:?}") };
+    assert_eq!((rough.microfacets.distribution, rough.microfacets.alphas()), (Distribution::Beckmann, [0.25; 2]));
+    let gold = lobe("type = \"conductor\"\nmetal = \"gold\"\ncompensation = \"kulla-conty\"");
     assert!(matches!(
         gold,
-        Model::Conductor { fresnel: FresnelSpec::Conductor { .. }, compensation: Compensation::KullaConty, .. }
+        AnyLobe::Conductor(Conductor {
+            fresnel: Fresnel::Conductor { .. },
+            compensation: Compensation::KullaConty,
+            ..
+        })
     ));
     assert!(matches!(
-        model("type = \"conductor\"\nf0 = 0.9\nf82 = 0.5\nalpha = 1e-8"),
-        Model::Conductor { fresnel: FresnelSpec::F82 { .. }, .. }
+        lobe("type = \"conductor\"\nf0 = 0.9\nf82 = 0.5\nalpha = 1e-8"),
+        AnyLobe::Conductor(Conductor { fresnel: Fresnel::F82 { .. }, .. })
     ));
+}
+
+#[test]
+fn a_layered_material_is_a_coat_over_its_base() {
+    let text = "type = \"layered\"\nior = 1.6\ncolor = [1, 0.5, 0.25]\nbase = { type = \"mix\", lobes = [\n\
+                { base_color = 0.5, weight = 0.5 }, { type = \"mirror\", weight = 0.5 }] }\n";
+    let material = read_text(text).unwrap();
+    let [coat, base, mirror] = &material.lobes[..] else { panic!("{material:?}") };
+    assert_eq!((coat.coat, base.coat), (Some(Layering::Reciprocal), None));
+    assert!(matches!(coat.lobe, AnyLobe::SmoothConductor(_)), "{coat:?}");
+    assert_eq!((base.weight, mirror.weight), (Rgb::new(0.5, 0.25, 0.125), Rgb::new(0.5, 0.25, 0.125)));
+    let rough = "type = \"layered\"\nroughness = 0.3\nlayering = \"furnace-preserving\"\nbase = {}";
+    let material = read_text(rough).unwrap();
+    assert!(matches!(material.lobes[0].lobe, AnyLobe::Conductor(_)), "{material:?}");
+    assert_eq!(material.lobes[0].coat, Some(Layering::FurnacePreserving));
+    let twice = "type = \"layered\"\nbase = { type = \"layered\", base = { type = \"eon\" } }";
+    assert_eq!(read_text(twice).unwrap().lobes.iter().filter(|l| l.coat.is_some()).count(), 2);
+    for (text, says) in [
+        ("type = \"layered\"", "a layered material needs a \"base\", a table"),
+        ("type = \"layered\"\nior = 0.9\nbase = {}", "\"ior\" must be a number from 1 to 3, not 0.9"),
+        ("type = \"layered\"\nbase = { gloss = 1 }", "unknown key \"gloss\" in the base of the material"),
+        ("type = \"layered\"\ngloss = 1\nbase = {}", "unknown key \"gloss\" in the material; known are"),
+    ] {
+        let message = refused(text);
+        assert!(message.contains(says), "{text}: {message}");
+    }
 }
 
 #[test]
 fn what_a_type_cannot_be_is_refused_with_what_it_can() {
     for (text, says) in [
-        ("type = \"conductor\"\nmetal = \"gould\"", "the metal \"gould\" is not known; known are \"silver\""),
-        ("type = \"conductor\"\nmetal = \"gold\"\nf0 = 1", "a conductor needs one of"),
-        ("type = \"conductor\"\nf0 = 1\nalpha = 0", "gives an alpha below 1e-8"),
+        ("type = \"conductor\"\nmetal = \"gould\"", "\"metal\" cannot be \"gould\"; known are \"silver\""),
+        ("type = \"conductor\"\nmetal = \"gold\"\nf0 = 1", "the material needs one of"),
+        ("type = \"conductor\"\nf0 = 1\nalpha = 0", "what is smooth is a \"mirror\""),
         ("type = \"conductor\"\nf0 = 1\nmasking = \"smith\"", "\"masking\" cannot be \"smith\""),
         (
             "type = \"conductor\"\nf0 = 1\ndistribution = \"beckmann\"\ncompensation = \"turquin\"",
             "\"compensation\" needs the distribution \"ggx\"",
         ),
         ("type = \"dielectric\"\nior = 0", "ior"),
-        ("type = \"phong\"\ndiffuse = 0.6\nglossy = 0.6", "reflects 1.2 of the light"),
+        ("type = \"phong\"\ndiffuse = 0.6\nglossy = 0.6", "\"diffuse\" and \"glossy\" together reflect more than all light"),
         ("type = \"eon\"\nroughness = 1.5", "roughness"),
     ] {
         let message = refused(text);

@@ -9,8 +9,10 @@
 use std::path::Path;
 
 use glam::{DAffine3, DVec3};
-use gonio_kernel::Rgb;
+use gonio_kernel::lobe::{AnyLobe, Layering};
+use gonio_kernel::{Parameters, Rgb};
 
+use crate::material::CustomLobe;
 use crate::normal_map::NormalMap;
 use crate::texture::Texture;
 
@@ -30,13 +32,6 @@ mod transform;
 
 pub use environment::{Environment, Sky, SkyMap};
 pub use error::SceneError;
-pub use gonio_kernel::energy::Compensation;
-pub use gonio_kernel::lobe::PhongNorm;
-pub use gonio_kernel::lobe::eon::Directional;
-pub use gonio_kernel::microfacet::Masking;
-
-/// Smallest microfacet width: below it, a mirror is what is meant.
-pub(crate) const MIN_ALPHA: f32 = gonio_kernel::microfacet::ALPHA_MIN as f32;
 /// Largest radiance a material or the environment may have: the film's range ends a little above.
 pub(crate) const MAX_RADIANCE: f64 = 1e6;
 
@@ -114,7 +109,7 @@ pub struct Scene {
     pub integrator: IntegratorSettings,
     /// Materials; a mesh names them by index. Never more than 65535.
     pub materials: Vec<Material>,
-    /// Decoded images; [`Color::Texture`] names them by index.
+    /// Decoded images; [`TexturedParameter`] names them by index.
     pub textures: Vec<Texture>,
     /// Decoded images of normals; [`NormalMapSpec`] names them by index.
     pub normal_maps: Vec<NormalMap>,
@@ -170,14 +165,28 @@ pub struct IntegratorSettings {
 pub struct Material {
     /// The name it has in the scene or MTL file.
     pub name: String,
-    /// One to four lobes, whose contributions add.
+    /// Up to twelve lobes from the top down, of which at most three are coats.
     pub lobes: Vec<LobeSpec>,
+    /// A lobe of the user's own, in place of `lobes`.
+    pub custom: Option<CustomLobe>,
     /// Emitted radiance, linear Rec. 709, at least 0; leaves from the front of the winding.
     pub emission: Rgb<f32>,
     /// Whether the back scatters like the front; a one-sided material is black from behind.
     pub two_sided: bool,
     /// An image that tilts the shading normal; its meshes then have texture coordinates.
     pub normal_map: Option<NormalMapSpec>,
+}
+
+impl Material {
+    /// A two-sided material of these lobes that emits nothing.
+    pub fn new(name: &str, lobes: Vec<LobeSpec>) -> Self {
+        let (emission, two_sided) = (Rgb::splat(0.0), true);
+        Self { name: name.to_owned(), lobes, custom: None, emission, two_sided, normal_map: None }
+    }
+    /// A two-sided material that scatters by a lobe of the user's own.
+    pub fn of_lobe(name: &str, lobe: CustomLobe) -> Self {
+        Self { custom: Some(lobe), ..Self::new(name, Vec::new()) }
+    }
 }
 
 /// An image of normals, and how steep it is taken to be.
@@ -189,136 +198,52 @@ pub struct NormalMapSpec {
     pub scale: f32,
 }
 
-/// A lobe and its share.
+/// A lobe of a material. Its contribution adds to that of the others; below a coat it is attenuated by it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LobeSpec {
-    /// Factor on the lobe's reflected light, in [0, 1].
-    pub weight: f32,
-    /// What it does with light.
-    pub model: Model,
+    /// Factor on the lobe's light, each channel in [0, 1].
+    pub weight: Rgb<f32>,
+    /// The scattering model with its parameters.
+    pub lobe: AnyLobe<'static, f32>,
+    /// Colours that are multiplied by an image.
+    pub textures: Vec<TexturedParameter>,
+    /// How it attenuates all lobes that come after it, if it is a coat.
+    pub coat: Option<Layering>,
 }
 
-/// The reflection models a scene can name.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Model {
-    /// Lambert's law.
-    Diffuse {
-        /// Albedo, each channel in [0, 1].
-        base_color: Color,
-    },
-    /// A perfectly smooth mirror.
-    Mirror {
-        /// Reflectance at every angle, each channel in [0, 1].
-        reflectance: Color,
-    },
-    /// A rough diffuse surface: energy-preserving Oren–Nayar.
-    Eon {
-        /// Albedo, each channel in [0, 1].
-        base_color: Color,
-        /// Roughness in [0, 1]; 0 is Lambert's law.
-        roughness: f32,
-        /// Whether the albedo that it conserves is exact or a fit.
-        directional: Directional,
-    },
-    /// The modified Phong model.
-    Phong {
-        /// k_d, each channel in [0, 1]; with `glossy` at most 1.
-        diffuse: Color,
-        /// k_s, each channel in [0, 1].
-        glossy: Rgb<f32>,
-        /// Exponent in [0, 1e7].
-        exponent: f32,
-        /// What the glossy part is multiplied by.
-        norm: PhongNorm,
-    },
-    /// A rough metal, or the reflecting part of a dielectric.
-    Conductor {
-        /// What one facet reflects.
-        fresnel: FresnelSpec,
-        /// How rough it is.
-        microfacets: MicrofacetSpec,
-        /// What becomes of light that meets more than one facet.
-        compensation: Compensation,
-    },
-    /// A dielectric that reflects and refracts.
-    Dielectric {
-        /// Index of the inside, where the winding's back is, over that of the outside, in [0.01, 100].
-        ior: f32,
-        /// How rough it is; smooth without.
-        microfacets: Option<MicrofacetSpec>,
-    },
-}
-
-/// A distribution of microfacets.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MicrofacetSpec {
-    /// Which distribution.
-    pub distribution: Distribution,
-    /// How masking and shadowing go together.
-    pub masking: Masking,
-    /// Width along the tangent, in [1e-8, 1].
-    pub alpha_x: f32,
-    /// Width along the bitangent, in [1e-8, 1].
-    pub alpha_y: f32,
-}
-
-impl MicrofacetSpec {
-    /// GGX with height-correlated masking.
-    pub const fn ggx(alpha_x: f32, alpha_y: f32) -> Self {
-        Self { distribution: Distribution::Ggx, masking: Masking::HeightCorrelated, alpha_x, alpha_y }
+impl LobeSpec {
+    /// A lobe with factor 1 and without textures.
+    pub fn new(lobe: impl Into<AnyLobe<'static, f32>>) -> Self {
+        Self { weight: Rgb::splat(1.0), lobe: lobe.into(), textures: Vec::new(), coat: None }
+    }
+    /// The same as a coat over all lobes that come after it.
+    #[must_use]
+    pub fn as_coat(self, layering: Layering) -> Self {
+        Self { coat: Some(layering), ..self }
+    }
+    /// The same with the colour of that key multiplied by an image; unchanged if the lobe has no such colour.
+    #[must_use]
+    pub fn with_texture(mut self, key: &str, texture: usize) -> Self {
+        let (mut at, mut first) = (0, None);
+        let _: AnyLobe<f32> = self.lobe.map(&mut |parameter, channel, x| {
+            if parameter.key == key && parameter.is_color && channel == 0 {
+                first = Some(at);
+            }
+            at += 1;
+            x
+        });
+        self.textures.extend(first.map(|at| TexturedParameter { at, texture }));
+        self
     }
 }
 
-/// The distributions of microfacets a scene can name.
+/// A colour of a lobe that is multiplied by an image at the hit's texture coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Distribution {
-    /// Trowbridge–Reitz.
-    Ggx,
-    /// Gaussian slopes.
-    Beckmann,
-}
-
-/// Reflectance of a facet against angle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FresnelSpec {
-    /// A metal's complex index of refraction per channel.
-    Conductor {
-        /// Index of refraction, above 0.
-        eta: Rgb<f32>,
-        /// Extinction coefficient, at least 0.
-        k: Rgb<f32>,
-    },
-    /// Schlick's approximation, rising to 1 at grazing.
-    Schlick {
-        /// Reflectance at normal incidence, each channel in [0, 1].
-        f0: Rgb<f32>,
-    },
-    /// Schlick's approximation with a dip at 82°.
-    F82 {
-        /// Reflectance at normal incidence, each channel in [0, 1].
-        f0: Rgb<f32>,
-        /// What is left of Schlick's value at 82°, each channel in [0, 1].
-        tint: Rgb<f32>,
-    },
-    /// The reflection of a dielectric.
-    Dielectric {
-        /// Index behind the surface over that before it, in [0.01, 100].
-        ior: f32,
-    },
-}
-
-/// A colour that is the same everywhere or comes from an image.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Color {
-    /// The same everywhere, linear Rec. 709.
-    Constant(Rgb<f32>),
-    /// Read from an image at the hit's texture coordinates.
-    Texture {
-        /// Index into [`Scene::textures`].
-        texture: usize,
-        /// Factor on the image, each channel in [0, 1].
-        scale: Rgb<f32>,
-    },
+pub struct TexturedParameter {
+    /// The place of its first channel among the lobe's numbers, in the order of [`Parameters::map`].
+    pub at: usize,
+    /// Index into [`Scene::textures`].
+    pub texture: usize,
 }
 
 /// A triangle mesh in its own coordinates.

@@ -5,7 +5,8 @@
 use crate::shipped::{Files, shipped, unpack};
 use anyhow::Result;
 use gonio_accel::Intersect;
-use gonio_tracer::scene::{Color, Model, Scene, Sky};
+use gonio_kernel::{Lobe, Rgb};
+use gonio_tracer::scene::{Scene, Sky};
 use gonio_tracer::{Backend, Plan, RenderSettings, Rendering, World, render};
 use std::fmt;
 use std::iter;
@@ -139,12 +140,10 @@ impl Furnace {
         let material = &scene.materials[0];
         let mut albedo = [0.0; 3];
         for lobe in &material.lobes {
-            if let Model::Diffuse { base_color: Color::Constant(c) }
-            | Model::Mirror { reflectance: Color::Constant(c) } = lobe.model
-            {
-                for (sum, x) in albedo.iter_mut().zip(<[f32; 3]>::from(c)) {
-                    *sum += f64::from(lobe.weight) * f64::from(x);
-                }
+            // What the shipped furnaces are made of says of itself what it returns.
+            let known = lobe.lobe.properties().albedo.unwrap_or(Rgb::splat(f32::NAN));
+            for (sum, x) in albedo.iter_mut().zip(<[f32; 3]>::from(known * lobe.weight)) {
+                *sum += f64::from(x);
             }
         }
         let light: [f32; 3] = match self.law {

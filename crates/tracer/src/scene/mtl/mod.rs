@@ -8,10 +8,13 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use gonio_kernel::Rgb;
+use gonio_kernel::fresnel::Fresnel;
+use gonio_kernel::lobe::{Conductor, Lambert, Layering, Mirror};
+use gonio_kernel::microfacet::Ggx;
 
 use super::error::quoted;
 use super::textures::Textures;
-use super::{Color, Compensation, FresnelSpec, LobeSpec, Material, MicrofacetSpec, Model, SceneError, paths};
+use super::{LobeSpec, Material, SceneError, paths};
 
 mod clean;
 
@@ -79,30 +82,26 @@ impl Library {
             base = Rgb::splat(1.0); // exporters that rely on the image write a black Kd, or none
         }
 
-        let mut diffuse = base * (1.0 - metalness);
-        let mut f0 = base * metalness + specular * (1.0 - metalness);
-        let sum = (diffuse + f0).largest();
-        if sum > 1.0 {
-            (diffuse, f0) = (diffuse * (1.0 / sum), f0 * (1.0 / sum));
-            self.lose("Kd + Ks is more than 1; both are scaled down", &name);
-        }
+        let diffuse = base * (1.0 - metalness);
+        let f0 = (base * metalness + specular * (1.0 - metalness)).map(|x| x.min(1.0));
 
         let mut lobes = Vec::new();
-        if !is_black(diffuse) || is_black(f0) {
-            let base_color = match map {
-                Some(texture) => Color::Texture { texture, scale: diffuse },
-                None => Color::Constant(diffuse),
-            };
-            lobes.push(LobeSpec { weight: 1.0, model: Model::Diffuse { base_color } });
-        }
         if !is_black(f0) {
             if map.is_some() && metalness > 0.0 {
                 self.lose("not supported yet: map_Kd on the metal part", &name);
             }
-            let model = reflection(f0, illum, &mtl, unknown("Pr"), unknown("Pm"), unknown("aniso"));
-            lobes.push(LobeSpec { weight: 1.0, model });
+            let top = reflection(f0, illum, &mtl, unknown("Pr"), unknown("Pm"), unknown("aniso"));
+            // What the reflection leaves of the light falls on the diffuse part: their sum conserves energy at every angle.
+            lobes.push(if is_black(diffuse) { top } else { top.as_coat(Layering::Reciprocal) });
         }
-        Ok(Material { name, lobes, emission, two_sided: true, normal_map: None })
+        if !is_black(diffuse) || is_black(f0) {
+            let lobe = LobeSpec::new(Lambert::new(diffuse));
+            lobes.push(match map {
+                Some(texture) => lobe.with_texture("base_color", texture),
+                None => lobe,
+            });
+        }
+        Ok(Material { emission, ..Material::new(&name, lobes) })
     }
 
     /// Notes every statement that `convert` does not read.
@@ -170,7 +169,7 @@ fn reflection(
     pr: Option<f64>,
     pm: Option<f64>,
     aniso: Option<f64>,
-) -> Model {
+) -> LobeSpec {
     let ray_traced = matches!(illum, 3..=7);
     let sharp = mtl.shininess.is_none_or(|ns| ns >= MIRROR_NS);
     let alpha = match (pr, mtl.shininess) {
@@ -181,18 +180,14 @@ fn reflection(
         (None, None) => 1.0,                  // Ns = 0
     };
     if alpha < f64::from(MIRROR_ALPHA) {
-        return Model::Mirror { reflectance: Color::Constant(f0) };
+        return LobeSpec::new(Mirror::new(f0));
     }
     let aniso = aniso.unwrap_or(0.0);
     let aspect = (1.0 - 0.9 * aniso.abs()).sqrt(); // Burley 2012, "Physically-Based Shading at Disney"
     let clamp = |alpha: f64| (alpha as f32).clamp(MIRROR_ALPHA, 1.0);
     let (long, short) = (clamp(alpha / aspect), clamp(alpha * aspect));
     let (alpha_x, alpha_y) = if aniso < 0.0 { (short, long) } else { (long, short) };
-    Model::Conductor {
-        fresnel: FresnelSpec::Schlick { f0 },
-        microfacets: MicrofacetSpec::ggx(alpha_x, alpha_y),
-        compensation: Compensation::None,
-    }
+    LobeSpec::new(Conductor::new(Ggx { alpha_x, alpha_y }, Fresnel::Schlick { f0 }))
 }
 
 /// Splits `-s 2 2 2 -clamp on wood grain.png` into the options' names and the file's.

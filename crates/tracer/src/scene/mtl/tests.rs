@@ -3,6 +3,7 @@
 use std::fs;
 
 use super::*;
+use gonio_kernel::lobe::AnyLobe;
 
 fn converted(statements: &str) -> (Material, Vec<String>) {
     use std::sync::atomic::{AtomicU32, Ordering};
@@ -24,23 +25,20 @@ fn quiet(statements: &str) -> Material {
 }
 
 fn diffuse(r: f32, g: f32, b: f32) -> LobeSpec {
-    LobeSpec { weight: 1.0, model: Model::Diffuse { base_color: Color::Constant(Rgb::new(r, g, b)) } }
+    LobeSpec::new(Lambert::new(Rgb::new(r, g, b)))
 }
 
 fn metal(f0: f32, alpha_x: f32, alpha_y: f32) -> LobeSpec {
-    let fresnel = FresnelSpec::Schlick { f0: Rgb::splat(f0) };
-    LobeSpec {
-        weight: 1.0,
-        model: Model::Conductor {
-            fresnel,
-            microfacets: MicrofacetSpec::ggx(alpha_x, alpha_y),
-            compensation: Compensation::None,
-        },
-    }
+    LobeSpec::new(Conductor::new(Ggx { alpha_x, alpha_y }, Fresnel::Schlick { f0: Rgb::splat(f0) }))
+}
+
+/// The same over what comes after it.
+fn coat(f0: f32, alpha_x: f32, alpha_y: f32) -> LobeSpec {
+    metal(f0, alpha_x, alpha_y).as_coat(Layering::Reciprocal)
 }
 
 fn mirror(reflectance: f32) -> LobeSpec {
-    LobeSpec { weight: 1.0, model: Model::Mirror { reflectance: Color::Constant(Rgb::splat(reflectance)) } }
+    LobeSpec::new(Mirror::new(Rgb::splat(reflectance)))
 }
 
 #[test]
@@ -55,7 +53,7 @@ fn kd_is_the_diffuse_colour() {
 fn ks_with_ns_is_a_rough_reflection_from_illum_2_on() {
     assert_eq!(
         quiet("Kd 0.5 0.5 0.5\nKs 0.25 0.25 0.25\nNs 30").lobes,
-        [diffuse(0.5, 0.5, 0.5), metal(0.25, 0.25, 0.25)]
+        [coat(0.25, 0.25, 0.25), diffuse(0.5, 0.5, 0.5)]
     );
     assert_eq!(quiet("Kd 0.5 0.5 0.5\nKs 0.25 0.25 0.25\nNs 30\nillum 1").lobes, [diffuse(0.5, 0.5, 0.5)]);
     assert_eq!(quiet("Ks 0.5 0.5 0.5").lobes, [metal(0.5, 1.0, 1.0)]);
@@ -66,14 +64,14 @@ fn ray_traced_reflections_of_a_large_exponent_are_mirrors() {
     assert_eq!(quiet("Kd 0 0 0\nKs 0.9 0.9 0.9\nNs 1000\nillum 3").lobes, [mirror(0.9)]);
     assert_eq!(quiet("Kd 0 0 0\nKs 0.9 0.9 0.9\nillum 5").lobes, [mirror(0.9)]);
     assert_eq!(quiet("Kd 0 0 0\nKs 0.9 0.9 0.9\nNs 1e9").lobes, [mirror(0.9)]);
-    assert!(matches!(quiet("Kd 0 0 0\nKs 0.9 0.9 0.9\nNs 1000").lobes[0].model, Model::Conductor { .. }));
+    assert!(matches!(quiet("Kd 0 0 0\nKs 0.9 0.9 0.9\nNs 1000").lobes[0].lobe, AnyLobe::Conductor(_)));
 }
 
 #[test]
-fn more_than_all_light_is_scaled_down_with_a_warning() {
+fn what_the_reflection_leaves_falls_on_the_diffuse_part() {
     let (material, warnings) = converted("Kd 1 1 1\nKs 1 1 1\nNs 30");
-    assert_eq!(material.lobes, [diffuse(0.5, 0.5, 0.5), metal(0.5, 0.25, 0.25)]);
-    assert_eq!(warnings, ["Kd + Ks is more than 1; both are scaled down (in \"m\")"]);
+    assert_eq!(material.lobes, [coat(1.0, 0.25, 0.25), diffuse(1.0, 1.0, 1.0)]);
+    assert_eq!(warnings, [""; 0]);
 }
 
 #[test]
@@ -84,7 +82,7 @@ fn ke_is_emission() {
 
 #[test]
 fn metalness_divides_kd_between_metal_and_diffuse() {
-    assert_eq!(quiet("Kd 0.5 0.5 0.5\nPm 0.5\nPr 0.5").lobes, [diffuse(0.25, 0.25, 0.25), metal(0.25, 0.25, 0.25)]);
+    assert_eq!(quiet("Kd 0.5 0.5 0.5\nPm 0.5\nPr 0.5").lobes, [coat(0.25, 0.25, 0.25), diffuse(0.25, 0.25, 0.25)]);
     assert_eq!(quiet("Kd 0.5 0.5 0.5\nPm 1").lobes, [metal(0.5, 0.25, 0.25)]);
     assert_eq!(quiet("Kd 0.5 0.5 0.5\nPm 1\nPr 0").lobes, [mirror(0.5)]);
 }
