@@ -9,6 +9,7 @@ mod hard_cases; // Inputs that broke other renderers, replayed in every arithmet
 mod instruments; // Each instrument passes the kernel and catches its planted faults.
 mod large; // Ten million triangles, in small: memory per triangle, progress, files that are only large.
 mod mitsuba; // The Cornell box and scenes under environment and normal maps are the pictures that Mitsuba 3 makes.
+mod model_tables; // The tables of models in the docs say what the kernel declares.
 mod normal_maps; // Normal maps in scene files: which way a bump points, what light is lost, which files are refused.
 mod pictures; // Threads, crops, plans, backends, scale and place never change a picture.
 mod scene_files; // Scene files, good and bad: what loads, what it becomes, and the very words of each refusal.

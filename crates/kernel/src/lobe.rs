@@ -346,7 +346,7 @@ impl<R: Real> Value<R> {
         // NaN where one is; and where it overflows, beyond any density that a direction of f32 can have.
         let least = r.min(g).min(b.min(self.pdf));
         let sum = (r + g) + (b + self.pdf);
-        least.ge(R::ZERO) & sum.is_finite()
+        least.ge(R::ZERO) & sum.lt(R::lit(f64::INFINITY))
     }
 }
 

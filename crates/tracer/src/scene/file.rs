@@ -39,7 +39,11 @@ pub(super) fn read(text: &str, path: &Path, progress: &mut dyn FnMut(Loading)) -
     let environment = environment::read(environment, &mut |text| builder.warn(text))?;
     for (name, _, value) in materials.iter().flat_map(Table::entries) {
         let table = value.table(&format!("material \"{name}\""))?;
-        let material = material::read(name, &table, Some(&mut builder.textures))?;
+        let mut older = Vec::new();
+        let mut context =
+            material::Context { textures: Some(&mut builder.textures), warn: &mut |text| older.push(text) };
+        let material = material::read(name, &table, &mut context)?;
+        older.into_iter().for_each(|text| builder.warn(text));
         builder.define(material).map_err(|why| value.error(why))?;
     }
     let meshes = match &meshes {

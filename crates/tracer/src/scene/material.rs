@@ -31,16 +31,25 @@ impl Material {
         let parsed = document.parse()?;
         let table = Table::new(document, "the material", 0, parsed.get_ref());
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        read(&name, &table, None)
+        let mut context = Context { textures: None, warn: &mut |_| () };
+        read(&name, &table, &mut context)
     }
 }
 
-/// Reads one material; without `textures`, images are refused.
-pub(super) fn read(name: &str, table: &Table<'_>, mut textures: Option<&mut Textures>) -> Result<Material, SceneError> {
+/// What reading a material needs beside its table.
+pub(super) struct Context<'c> {
+    /// Where images go; without it they are refused.
+    pub(super) textures: Option<&'c mut Textures>,
+    /// What is read otherwise than it is written.
+    pub(super) warn: &'c mut dyn FnMut(String),
+}
+
+/// Reads one material.
+pub(super) fn read(name: &str, table: &Table<'_>, context: &mut Context<'_>) -> Result<Material, SceneError> {
     let emission = optional(table.get("emission"), |v| v.rgb(0.0..=MAX_RADIANCE))?.unwrap_or(Rgb::splat(0.0));
     let two_sided = optional(table.get("two_sided"), |v| v.boolean())?.unwrap_or(true);
-    let normal_map = normal_map(table, textures.as_deref_mut())?;
-    let lobes = lobes(table, &mut textures)?;
+    let normal_map = normal_map(table, context.textures.as_deref_mut())?;
+    let lobes = lobes(table, context)?;
     if lobes.len() > MOST_LOBES {
         return Err(table.error(format!("{} has {} lobes; at most {MOST_LOBES} are possible", table.name(), lobes.len())));
     }
@@ -61,7 +70,7 @@ pub(super) fn read(name: &str, table: &Table<'_>, mut textures: Option<&mut Text
 }
 
 /// The lobes of a table, whatever its type, from the top down.
-fn lobes(table: &Table<'_>, textures: &mut Option<&mut Textures>) -> Result<Vec<LobeSpec>, SceneError> {
+fn lobes(table: &Table<'_>, context: &mut Context<'_>) -> Result<Vec<LobeSpec>, SceneError> {
     let lobes = match kind(table)? {
         "mix" => {
             let value = table.get("lobes").ok_or_else(|| table.error("a mix needs \"lobes\", an array of tables"))?;
@@ -72,39 +81,39 @@ fn lobes(table: &Table<'_>, textures: &mut Option<&mut Textures>) -> Result<Vec<
             let mut lobes = Vec::new();
             for (number, item) in (1..).zip(&items) {
                 let inner = item.table(&format!("lobe {number} of {}", table.name()))?;
-                lobes.push(lobe(&inner, textures)?);
+                lobes.push(lobe(&inner, context)?);
                 inner.finish()?;
             }
             lobes
         }
-        "layered" => layered(table, textures)?,
-        _ => vec![lobe(table, textures)?],
+        "layered" => layered(table, context)?,
+        _ => vec![lobe(table, context)?],
     };
     table.finish()?;
     Ok(lobes)
 }
 
 /// A dielectric coat over whatever `base` is.
-fn layered(table: &Table<'_>, textures: &mut Option<&mut Textures>) -> Result<Vec<LobeSpec>, SceneError> {
+fn layered(table: &Table<'_>, context: &mut Context<'_>) -> Result<Vec<LobeSpec>, SceneError> {
     let base = table.get("base").ok_or_else(|| table.error("a layered material needs a \"base\", a table"))?;
     let base = base.table(&format!("the base of {}", table.name()))?;
-    let (coating, textured) = Keys::new(table, textures).read::<Coating<f64>>()?;
+    let (coating, textured) = Keys::new(table, context).read::<Coating<f64>>()?;
     if let Some((key, _)) = textured.first() {
         return Err(table.error(format!("\"{key}\" of a coat takes no image")));
     }
     let coating = coating.map(&mut |_, _, x| x as f32);
     let mut all = vec![LobeSpec::new(coating.lobe()).as_coat(coating.layering)];
-    for lobe in lobes(&base, textures)? {
+    for lobe in lobes(&base, context)? {
         all.push(LobeSpec { weight: lobe.weight * coating.color, ..lobe });
     }
     Ok(all)
 }
 
 /// One lobe: a model of the kernel.
-fn lobe(table: &Table<'_>, textures: &mut Option<&mut Textures>) -> Result<LobeSpec, SceneError> {
+fn lobe(table: &Table<'_>, context: &mut Context<'_>) -> Result<LobeSpec, SceneError> {
     table.know("type");
     let weight = optional(table.get("weight"), |v| v.rgb(0.0..=1.0))?.unwrap_or(Rgb::splat(1.0));
-    let (lobe, textured) = Keys::new(table, textures).read::<AnyLobe<'static, f64>>()?;
+    let (lobe, textured) = Keys::new(table, context).read::<AnyLobe<'static, f64>>()?;
     // Read in f64, so that alpha = roughness² is rounded once.
     let spec = LobeSpec { weight, ..LobeSpec::new(lobe.map(&mut |_, _, x| x as f32)) };
     Ok(textured.into_iter().fold(spec, |spec, (key, texture)| spec.with_texture(key, texture)))
@@ -122,17 +131,17 @@ fn optional<'d, T>(
 }
 
 /// The keys of a table as a source of parameters.
-struct Keys<'a, 'd, 't> {
+struct Keys<'a, 'd, 'c> {
     table: &'a Table<'d>,
-    textures: &'a mut Option<&'t mut Textures>,
+    context: &'a mut Context<'c>,
     model: &'d str,
     /// Which keys are multiplied by which image.
     textured: Vec<(&'static str, usize)>,
 }
 
-impl<'a, 'd, 't> Keys<'a, 'd, 't> {
-    fn new(table: &'a Table<'d>, textures: &'a mut Option<&'t mut Textures>) -> Self {
-        Self { table, textures, model: kind(table).unwrap_or_default(), textured: Vec::new() }
+impl<'a, 'd, 'c> Keys<'a, 'd, 'c> {
+    fn new(table: &'a Table<'d>, context: &'a mut Context<'c>) -> Self {
+        Self { table, context, model: kind(table).unwrap_or_default(), textured: Vec::new() }
     }
 
     fn read<P: Parameters<Real = f64>>(mut self) -> Result<(P, Vec<(&'static str, usize)>), SceneError> {
@@ -153,7 +162,7 @@ impl<'a, 'd, 't> Keys<'a, 'd, 't> {
         let file = table.get("texture").ok_or_else(|| table.error("a colour table needs \"texture\""))?;
         let scale = optional(table.get("scale"), |v| v.rgb(0.0..=parameter.quantity.hi))?.unwrap_or(Rgb::splat(1.0));
         table.finish()?;
-        self.textured.push((parameter.key, image(&file, self.textures.as_deref_mut(), Textures::load)?));
+        self.textured.push((parameter.key, image(&file, self.context.textures.as_deref_mut(), Textures::load)?));
         Ok(scale.map(f64::from))
     }
 }
@@ -186,9 +195,15 @@ impl Source<f64> for Keys<'_, '_, '_> {
     fn word(&mut self, words: &'static Words) -> Result<Option<usize>, SceneError> {
         let Some(value) = self.table.get(words.key) else { return Ok(None) };
         let word = value.string()?;
-        words.find(word).map(Some).ok_or_else(|| {
-            value.error(format!("\"{}\" cannot be \"{word}\"; known are {}", words.key, quoted(words.each())))
-        })
+        let Some(which) = words.find(word) else {
+            let text = format!("\"{}\" cannot be \"{word}\"; known are {}", words.key, quoted(words.each()));
+            return Err(value.error(text));
+        };
+        if let Some(now) = words.each().nth(which).filter(|now| *now != word) {
+            let text = format!("\"{word}\" is an older word for the {} \"{now}\"", words.key);
+            (self.context.warn)(value.error(text).to_string());
+        }
+        Ok(Some(which))
     }
     fn refuse(&mut self, problem: Problem) -> SceneError {
         match problem {
