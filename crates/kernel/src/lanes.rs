@@ -4,7 +4,8 @@
 //! all ones or all zeros per lane, so that `and`, `or` and blends agree on what true means. `wide`'s own `min` and `max`
 //! cost three instructions and hide NaNs; ours are the single instruction, with the rule of [`Real::min`].
 
-use crate::real::{Mask, Precision, Real};
+use crate::real::{LARGEST_INT, Mask, Precision, Real, Recordable};
+use crate::table::Table;
 use crate::vec3::Vec3;
 use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, Mul, MulAssign, Neg, Not, Shl, Shr, Sub};
 use wide::{f32x8, i32x8, u32x8};
@@ -268,6 +269,7 @@ impl Mask for Mask8 {
     }
 }
 
+impl Recordable for F32x8 {}
 impl Real for F32x8 {
     type Mask = Mask8;
     type Int = U32x8;
@@ -373,6 +375,26 @@ impl Real for F32x8 {
     fn int_select(mask: Mask8, yes: U32x8, no: U32x8) -> U32x8 {
         U32x8::select(mask, yes, no)
     }
+    #[inline(always)]
+    fn to_int(self) -> U32x8 {
+        let inside = self.max(Self::ZERO).min(Self::splat(LARGEST_INT as f32));
+        U32x8(bytemuck::cast(inside.0.fast_trunc_int()))
+    }
+    #[inline(always)]
+    fn from_int(x: U32x8) -> Self {
+        x.to_real()
+    }
+    #[inline(always)]
+    fn lookup(table: Table<'_>, index: U32x8) -> Self {
+        let index = index.to_array();
+        Self::new(index.map(|index| table.at(index)))
+    }
+    #[inline(always)]
+    #[allow(clippy::eq_op)]
+    fn is_finite(self) -> Mask8 {
+        // As for the scalar.
+        (self - self).same(Self::ZERO)
+    }
 }
 
 #[cfg(test)]
@@ -416,7 +438,11 @@ mod tests {
         let (sin, cos) = sin_cos_turns(a);
         let angles = [sin, cos, atan2_turns(a, b)];
         let functions = [exp(a), exp_m1(a), ln(a), ln_1p(a), pow(a, b), erf(a), erf_inv(a)];
-        sums.into_iter().chain(others).chain(chosen).chain(bits).chain(angles).chain(functions).collect()
+        let table = Table::new(&[0.5, -3.0, f32::INFINITY, 1e-40, 7.0], 0);
+        let tables = [R::from_int(a.to_int()), R::from_int(b.round_to_int().1), R::lookup(table, a.to_int())];
+        let tables = tables.into_iter().chain([R::lookup(table, R::int(u32::MAX)), table.linear(a)]);
+        let tables = tables.chain([R::lookup(Table::new(&[], 1), a.to_int())]);
+        sums.into_iter().chain(others).chain(chosen).chain(bits).chain(angles).chain(functions).chain(tables).collect()
     }
 
     /// Every operation on reals that has a truth as result, in order.
@@ -426,7 +452,7 @@ mod tests {
         let compared = [lt, le, a.gt(b), a.ge(b), a.same(b), a.is_finite(), !lt, lt & le, lt | le, lt ^ le];
         let sum = R::int_add(x, y);
         let bits = [R::int_bit(x, 0), R::int_bit(x, 1), R::int_bit(x, 21), R::int_bit(sum, 1), R::int_bit(sum, 22)];
-        let whole = bits.into_iter().chain([R::int_same(x, y), R::int_lt(x, y)]);
+        let whole = bits.into_iter().chain([R::int_same(x, y), R::int_lt(x, y), R::int_same(a.to_int(), b.to_int())]);
         let chosen = [R::int_same(R::int_select(lt, x, R::int(3)), y), R::Mask::splat(true), R::Mask::splat(false)];
         compared.into_iter().chain(whole).chain(chosen).collect()
     }

@@ -42,6 +42,7 @@ pub mod microfacet;
 mod real;
 mod rgb;
 pub mod surface;
+pub mod table;
 #[cfg(test)]
 mod testing;
 pub mod units;
@@ -52,9 +53,12 @@ pub use closure::Closure;
 pub use frame::Frame;
 pub use lanes::{F32x8, Mask8, U32x8, each_lane};
 pub use lobe::{Event, Lobe, Properties, Sample, Value};
+#[doc(hidden)]
+pub use real::Recordable;
 pub use real::{Mask, Precision, Real};
 pub use rgb::Rgb;
 pub use surface::{Alpha, Roughness, Surface};
+pub use table::Table;
 pub use vec3::Vec3;
 
 /// Runs the example of the README.

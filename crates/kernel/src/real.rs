@@ -4,6 +4,7 @@
 //! answer for NaN and for the sign of zero (std leaves both open). `sqrt` and `mul_add` of a scalar are lane 0 of
 //! `wide`'s narrow types: `core` has neither, and std's fused multiply-add rounds differently where the target has none.
 
+use crate::table::Table;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, Mul, MulAssign, Neg, Not, Sub};
 
@@ -28,9 +29,28 @@ pub enum Precision {
     Double,
 }
 
+/// What seals [`Real`]: only a crate that records the kernel's operations implements it, and it is no part of what versions promise.
+///
+/// A recorder answers [`Mask::any`] with true and [`Mask::all`] with false, so that the text of both branches is recorded. Therefore
+/// control flow on values asks only "is there any work?": the result has the same bits whichever way the branch goes.
+#[doc(hidden)]
+pub trait Recordable: Copy {
+    /// f(args), a function worth keeping under its name in what is recorded. Everybody else's is transparent.
+    #[inline(always)]
+    fn named<const N: usize, const M: usize>(
+        name: &'static str,
+        args: [Self; N],
+        f: impl FnOnce([Self; N]) -> [Self; M],
+    ) -> [Self; M] {
+        let _ = name;
+        f(args)
+    }
+}
+
 /// A real number: `f32`, `f64`, or several `f32` in lanes.
 pub trait Real:
-    Copy
+    Recordable
+    + Copy
     + Debug
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -97,6 +117,21 @@ pub trait Real:
     fn int_lt(x: Self::Int, y: Self::Int) -> Self::Mask;
     /// `yes` where `mask`, `no` elsewhere.
     fn int_select(mask: Self::Mask, yes: Self::Int, no: Self::Int) -> Self::Int;
+    /// The integer part of self limited to [0, 2²² − 1]; a NaN gives 0. Exact: nothing is rounded.
+    ///
+    /// ```
+    /// # use gonio_kernel::Real;
+    /// assert_eq!([3.99_f32, -5.0, f32::NAN, 1e30].map(Real::to_int), [3, 0, 0, 4_194_303]);
+    /// ```
+    fn to_int(self) -> Self::Int;
+    /// The real nearest to an integer below 2³¹.
+    fn from_int(x: Self::Int) -> Self;
+    /// The value of `table` at `index`: beyond its end the last one, and 0 if it has none.
+    ///
+    /// Lanes cannot gather: each does a look-up of its own. So tables belong into what is prepared once, not into what depends on wi.
+    fn lookup(table: Table<'_>, index: Self::Int) -> Self;
+    /// Neither NaN nor infinite.
+    fn is_finite(self) -> Self::Mask;
 
     /// self > b, false for NaN.
     #[inline(always)]
@@ -112,13 +147,6 @@ pub trait Real:
     #[inline(always)]
     fn or_zero(self, mask: Self::Mask) -> Self {
         Self::select(mask, self, Self::ZERO)
-    }
-    /// Neither NaN nor infinite.
-    #[inline(always)]
-    #[allow(clippy::eq_op)]
-    fn is_finite(self) -> Self::Mask {
-        // inf − inf and NaN − NaN are NaN, which equals nothing.
-        (self - self).same(Self::ZERO)
     }
     /// self²
     #[inline(always)]
@@ -252,8 +280,30 @@ macro_rules! scalar_real {
             fn int_select(mask: bool, yes: u32, no: u32) -> u32 {
                 if mask { yes } else { no }
             }
+            #[inline(always)]
+            fn to_int(self) -> u32 {
+                Real::min(Real::max(self, 0.0), LARGEST_INT as $t) as u32
+            }
+            #[inline(always)]
+            fn from_int(x: u32) -> $t {
+                x.cast_signed() as $t // signed as in lanes
+            }
+            #[inline(always)]
+            fn lookup(table: Table<'_>, index: u32) -> $t {
+                table.at(index).into()
+            }
+            #[inline(always)]
+            #[allow(clippy::eq_op)]
+            fn is_finite(self) -> bool {
+                // inf − inf and NaN − NaN are NaN, which equals nothing.
+                self - self == 0.0
+            }
         }
+        impl Recordable for $t {}
     };
 }
+
+/// The largest result of [`Real::to_int`]: every real up to it has its integer part among the reals of `f32`.
+pub(crate) const LARGEST_INT: u32 = (1 << 22) - 1;
 scalar_real!(f32, u32, f32x4, Single, 0x8000_0000_u32, 12_582_912.0, 23); // 1.5·2²³
 scalar_real!(f64, u64, f64x2, Double, 0x8000_0000_0000_0000_u64, 6_755_399_441_055_744.0, 52); // 1.5·2⁵²
