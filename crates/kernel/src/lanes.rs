@@ -7,7 +7,9 @@
 use crate::real::{LARGEST_INT, Mask, Precision, Real, Recordable};
 use crate::table::Table;
 use crate::vec3::Vec3;
-use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, Mul, MulAssign, Neg, Not, Shl, Shr, Sub};
+use core::ops::{
+    Add, AddAssign, BitAnd, BitOr, BitXor, Div, DivAssign, Mul, MulAssign, Neg, Not, Shl, Shr, Sub, SubAssign,
+};
 use wide::{f32x8, i32x8, u32x8};
 
 /// Eight `f32`.
@@ -235,18 +237,17 @@ impl Neg for F32x8 {
         Self(-self.0)
     }
 }
-impl AddAssign for F32x8 {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
+macro_rules! assign {
+    ($($op:ident $f:ident $sign:tt),*) => {$(
+        impl $op for F32x8 {
+            #[inline(always)]
+            fn $f(&mut self, other: Self) {
+                *self = *self $sign other;
+            }
+        }
+    )*};
 }
-impl MulAssign for F32x8 {
-    #[inline(always)]
-    fn mul_assign(&mut self, other: Self) {
-        *self = *self * other;
-    }
-}
+assign!(AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *, DivAssign div_assign /);
 impl Not for Mask8 {
     type Output = Self;
     #[inline(always)]
@@ -400,70 +401,19 @@ impl Real for F32x8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{atan2_turns, erf, erf_inv, exp, exp_m1, ln, ln_1p, pow, sin_cos_turns};
-    use crate::testing::{Random, same_bits, special_values};
+    use crate::testing::results::{physics, reals, triples, truths};
+    use crate::testing::same_bits;
     use std::vec::Vec;
-
-    /// Triples of special values in all combinations, random bits, and ordinary numbers; a multiple of eight.
-    fn triples() -> Vec<[f32; 3]> {
-        let (values, mut random) = (special_values(), Random(10));
-        let each = values.iter().flat_map(|&a| values.iter().map(move |&b| (a, b)));
-        let mut triples: Vec<_> = each.flat_map(|(a, b)| values.iter().map(move |&c| [a, b, c])).collect();
-        triples.extend((0..4096).map(|_| [(); 3].map(|()| f32::from_bits(random.bits() as u32))));
-        triples.extend((0..4096).map(|_| [(); 3].map(|()| 8.0 * random.unit() - 4.0)));
-        triples.truncate(triples.len() / 8 * 8);
-        triples
-    }
-
-    /// Every operation on reals that has a real result, in order.
-    fn reals<R: Real>([a, b, c]: [R; 3]) -> Vec<R> {
-        let mask = a.lt(b);
-        let (mut sum, mut product) = (a, a);
-        sum += b;
-        product *= b;
-        let sums = [a + b, a - b, a * b, a / b, -a, sum, product, a.mul_add(b, c), a.sqr(), a.recip()];
-        let others = [
-            a.sqrt(),
-            a.abs(),
-            a.min(b),
-            a.max(b),
-            a.copysign(b),
-            a.clamp(-1.5, 0.5),
-            a.or_zero(mask),
-            a.negated(mask),
-        ];
-        let chosen = [R::select(mask, a, c), R::select(!mask, a, c), a.round_to_int().0, R::lit(0.1), R::ZERO, R::ONE];
-        let (mantissa, exponent) = a.split_exponent();
-        let bits = [mantissa, exponent, a.ldexp(b.round_to_int().1)];
-        let (sin, cos) = sin_cos_turns(a);
-        let angles = [sin, cos, atan2_turns(a, b)];
-        let functions = [exp(a), exp_m1(a), ln(a), ln_1p(a), pow(a, b), erf(a), erf_inv(a)];
-        let table = Table::new(&[0.5, -3.0, f32::INFINITY, 1e-40, 7.0], 0);
-        let tables = [R::from_int(a.to_int()), R::from_int(b.round_to_int().1), R::lookup(table, a.to_int())];
-        let tables = tables.into_iter().chain([R::lookup(table, R::int(u32::MAX)), table.linear(a)]);
-        let tables = tables.chain([R::lookup(Table::new(&[], 1), a.to_int())]);
-        sums.into_iter().chain(others).chain(chosen).chain(bits).chain(angles).chain(functions).chain(tables).collect()
-    }
-
-    /// Every operation on reals that has a truth as result, in order.
-    fn truths<R: Real>([a, b, c]: [R; 3]) -> Vec<R::Mask> {
-        let (x, y) = (a.round_to_int().1, b.round_to_int().1);
-        let (lt, le) = (a.lt(b), b.le(c));
-        let compared = [lt, le, a.gt(b), a.ge(b), a.same(b), a.is_finite(), !lt, lt & le, lt | le, lt ^ le];
-        let sum = R::int_add(x, y);
-        let bits = [R::int_bit(x, 0), R::int_bit(x, 1), R::int_bit(x, 21), R::int_bit(sum, 1), R::int_bit(sum, 22)];
-        let whole = bits.into_iter().chain([R::int_same(x, y), R::int_lt(x, y), R::int_same(a.to_int(), b.to_int())]);
-        let chosen = [R::int_same(R::int_select(lt, x, R::int(3)), y), R::Mask::splat(true), R::Mask::splat(false)];
-        compared.into_iter().chain(whole).chain(chosen).collect()
-    }
 
     #[test]
     fn every_lane_has_the_bits_of_the_scalar() {
         for eight in triples().chunks_exact(8) {
             let lanes = [0, 1, 2].map(|part| F32x8::new(core::array::from_fn(|lane| eight[lane][part])));
-            let (together, true_together) = (reals(lanes), truths(lanes));
+            let together: Vec<_> = reals(lanes).into_iter().chain(physics(lanes)).collect();
+            let true_together = truths(lanes);
             for (lane, &alone) in eight.iter().enumerate() {
-                for (op, (&x, scalar)) in together.iter().zip(reals(alone)).enumerate() {
+                let scalar = reals(alone).into_iter().chain(physics(alone));
+                for (op, (&x, scalar)) in together.iter().zip(scalar).enumerate() {
                     let x = x.to_array()[lane];
                     assert!(same_bits(x, scalar), "real {op} of {alone:?}: {x:e} in lanes, {scalar:e} alone");
                 }

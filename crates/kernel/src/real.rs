@@ -6,7 +6,7 @@
 
 use crate::table::Table;
 use core::fmt::Debug;
-use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, Mul, MulAssign, Neg, Not, Sub};
+use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, DivAssign, Mul, MulAssign, Neg, Not, Sub, SubAssign};
 
 /// The truth of a comparison, lane by lane: `bool` for a scalar.
 pub trait Mask:
@@ -36,6 +36,8 @@ pub enum Precision {
 #[doc(hidden)]
 pub trait Recordable: Copy {
     /// f(args), a function worth keeping under its name in what is recorded. Everybody else's is transparent.
+    ///
+    /// `f` uses nothing but its arguments and constants, and is marked `#[inline(always)]`, without which long ones become calls.
     #[inline(always)]
     fn named<const N: usize, const M: usize>(
         name: &'static str,
@@ -58,7 +60,9 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
     + AddAssign
+    + SubAssign
     + MulAssign
+    + DivAssign
     + 'static
 {
     /// The result of a comparison.

@@ -1,5 +1,11 @@
 //! What the unit tests share: repeatable random numbers, the numbers that break things, and comparisons.
 
+mod mixed_lanes;
+pub(crate) mod results;
+
+#[allow(unused_imports)] // for the tests of lobes and closures
+pub(crate) use mixed_lanes::MixedLanes;
+
 use crate::vec3::Vec3;
 use std::vec::Vec;
 
