@@ -12,20 +12,28 @@ use core::ops::{
 };
 use wide::{f32x8, i32x8, u32x8};
 
-/// Eight `f32`.
+/// Eight `f32`, in memory like `[f32; 8]` at an address that is a multiple of 32.
+///
+/// ```
+/// use gonio_kernel::{F32x8, Real};
+/// let roots = F32x8::from([1.0, 4.0, 9.0, 16.0, 25.0, 36.0, 49.0, 64.0]).sqrt();
+/// assert_eq!(<[f32; 8]>::from(roots), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(transparent)]
-pub struct F32x8(pub f32x8);
+pub struct F32x8(f32x8);
 
 /// Eight truths, each all ones or all zeros.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub struct Mask8(f32x8);
 
-/// Eight `u32`, with wrapping arithmetic.
-#[derive(Clone, Copy, Debug)]
+/// Eight `u32`, with wrapping arithmetic; in memory like [`F32x8`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(transparent)]
-pub struct U32x8(pub u32x8);
+pub struct U32x8(u32x8);
 
 /// `[f(0), f(1), …]`, one per lane. Written out, because a closure per lane must be inlined to become eight loads.
 #[inline(always)]
@@ -41,6 +49,11 @@ impl F32x8 {
     #[inline(always)]
     pub const fn new(lanes: [f32; 8]) -> Self {
         Self(f32x8::new(lanes))
+    }
+    /// The same as [`F32x8::new`], under the name that goes with [`F32x8::to_array`].
+    #[inline(always)]
+    pub const fn from_array(lanes: [f32; 8]) -> Self {
+        Self::new(lanes)
     }
     /// Lane *i* is `f(i)`.
     #[inline(always)]
@@ -71,6 +84,18 @@ impl F32x8 {
     #[inline(always)]
     pub fn to_array(self) -> [f32; 8] {
         self.0.to_array()
+    }
+    /// The type behind it, for our ray casting alone: no part of what versions promise.
+    #[doc(hidden)]
+    #[inline(always)]
+    pub const fn to_wide(self) -> f32x8 {
+        self.0
+    }
+    /// See [`F32x8::to_wide`].
+    #[doc(hidden)]
+    #[inline(always)]
+    pub const fn from_wide(lanes: f32x8) -> Self {
+        Self(lanes)
     }
     /// The bit patterns of the lanes.
     #[inline(always)]
@@ -113,6 +138,11 @@ impl U32x8 {
     #[inline(always)]
     pub const fn new(lanes: [u32; 8]) -> Self {
         Self(u32x8::new(lanes))
+    }
+    /// The same as [`U32x8::new`], under the name that goes with [`U32x8::to_array`].
+    #[inline(always)]
+    pub const fn from_array(lanes: [u32; 8]) -> Self {
+        Self::new(lanes)
     }
     /// Lane *i* is `f(i)`.
     #[inline(always)]
@@ -215,6 +245,24 @@ macro_rules! lanewise {
 lanewise!(F32x8: Add add, Sub sub, Mul mul, Div div);
 lanewise!(U32x8: Add add, Mul mul, BitXor bitxor, BitAnd bitand, BitOr bitor);
 lanewise!(Mask8: BitAnd bitand, BitOr bitor, BitXor bitxor);
+
+macro_rules! arrays {
+    ($($t:ident $element:ident),*) => {$(
+        impl From<[$element; 8]> for $t {
+            #[inline(always)]
+            fn from(lanes: [$element; 8]) -> Self {
+                Self::new(lanes)
+            }
+        }
+        impl From<$t> for [$element; 8] {
+            #[inline(always)]
+            fn from(lanes: $t) -> Self {
+                lanes.to_array()
+            }
+        }
+    )*};
+}
+arrays!(F32x8 f32, U32x8 u32);
 
 impl Shr<u32> for U32x8 {
     type Output = Self;

@@ -34,6 +34,7 @@ pub mod closure;
 pub mod energy;
 pub mod frame;
 pub mod fresnel;
+#[cfg(feature = "wide")]
 mod lanes;
 pub mod lobe;
 pub mod math;
@@ -51,6 +52,7 @@ pub mod warp;
 
 pub use closure::Closure;
 pub use frame::Frame;
+#[cfg(feature = "wide")]
 pub use lanes::{F32x8, Mask8, U32x8, each_lane};
 pub use lobe::{Event, Lobe, Properties, Sample, Value};
 #[doc(hidden)]

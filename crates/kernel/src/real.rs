@@ -3,6 +3,7 @@
 //! Two rules make eight lanes equal the scalar bit for bit. `min`, `max` and `select` are written here, with one
 //! answer for NaN and for the sign of zero (std leaves both open). `sqrt` and `mul_add` of a scalar are lane 0 of
 //! `wide`'s narrow types: `core` has neither, and std's fused multiply-add rounds differently where the target has none.
+//! Without the feature `wide` both are software that rounds once, as the instructions do: a feature never changes a result.
 
 use crate::table::Table;
 use core::fmt::Debug;
@@ -85,7 +86,7 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// |self|
     fn abs(self) -> Self;
-    /// self·a + b, fused where the build's target has the instruction.
+    /// self·a + b, fused where the build's target has the instruction, and always without the feature `wide`.
     fn mul_add(self, a: Self, b: Self) -> Self;
     /// The smaller of two: `if self < b { self } else { b }`, so a NaN on either side gives `b`.
     fn min(self, b: Self) -> Self;
@@ -185,7 +186,7 @@ impl Mask for bool {
 }
 
 macro_rules! scalar_real {
-    ($t:ty, $bits:ty, $narrow:ident, $precision:ident, $sign:expr, $magic:expr, $fraction:expr) => {
+    ($t:ty, $bits:ty, $narrow:ident, [$sqrt:ident, $fma:ident], $precision:ident, $sign:expr, $magic:expr, $fraction:expr) => {
         impl Real for $t {
             type Mask = bool;
             type Int = u32;
@@ -200,7 +201,10 @@ macro_rules! scalar_real {
             }
             #[inline(always)]
             fn sqrt(self) -> $t {
-                wide::$narrow::splat(self).sqrt().to_array()[0]
+                #[cfg(feature = "wide")]
+                return wide::$narrow::splat(self).sqrt().to_array()[0];
+                #[cfg(not(feature = "wide"))]
+                return libm::$sqrt(self);
             }
             #[inline(always)]
             fn abs(self) -> $t {
@@ -208,7 +212,11 @@ macro_rules! scalar_real {
             }
             #[inline(always)]
             fn mul_add(self, a: $t, b: $t) -> $t {
-                wide::$narrow::splat(self).mul_add(wide::$narrow::splat(a), wide::$narrow::splat(b)).to_array()[0]
+                #[cfg(feature = "wide")]
+                return wide::$narrow::splat(self).mul_add(wide::$narrow::splat(a), wide::$narrow::splat(b)).to_array()
+                    [0];
+                #[cfg(not(feature = "wide"))]
+                return libm::$fma(self, a, b);
             }
             #[inline(always)]
             fn min(self, b: $t) -> $t {
@@ -309,5 +317,5 @@ macro_rules! scalar_real {
 
 /// The largest result of [`Real::to_int`]: every real up to it has its integer part among the reals of `f32`.
 pub(crate) const LARGEST_INT: u32 = (1 << 22) - 1;
-scalar_real!(f32, u32, f32x4, Single, 0x8000_0000_u32, 12_582_912.0, 23); // 1.5·2²³
-scalar_real!(f64, u64, f64x2, Double, 0x8000_0000_0000_0000_u64, 6_755_399_441_055_744.0, 52); // 1.5·2⁵²
+scalar_real!(f32, u32, f32x4, [sqrtf, fmaf], Single, 0x8000_0000_u32, 12_582_912.0, 23); // 1.5·2²³
+scalar_real!(f64, u64, f64x2, [sqrt, fma], Double, 0x8000_0000_0000_0000_u64, 6_755_399_441_055_744.0, 52); // 1.5·2⁵²

@@ -1,5 +1,6 @@
 //! What the unit tests share: repeatable random numbers, the numbers that break things, and comparisons.
 
+mod builds;
 mod mixed_lanes;
 pub(crate) mod results;
 
