@@ -21,7 +21,7 @@ const NUMBERS: [&str; 3] = ["f32", "f64", "F32x8"];
 /// The methods of the trait `Lobe`.
 const METHODS: [&str; 5] = ["eval", "sample", "discrete", "albedo_estimate", "domain"];
 /// Types whose methods the proof calls in one function per number.
-const TYPES: [&str; 6] = ["Closure", "Unguarded", "Surface", "Frame", "Rgb", "units"];
+const TYPES: [&str; 7] = ["Closure", "Unguarded", "Surface", "Frame", "Rgb", "Table", "units"];
 /// Functions that have no number, and what a program without std must bring along.
 const OTHERS: [&str; 5] = ["lanes", "prove", "_start", "memcpy", "memset"];
 /// What the panic handler calls.

@@ -5,7 +5,7 @@ use core::hint::black_box;
 use gonio_kernel::lobe::AnyLobe;
 use gonio_kernel::units::{Area, Flux, Radiance, SolidAngle};
 use gonio_kernel::{
-    Closure, Event, F32x8, Frame, Mask, Mask8, Rgb, Sample, Surface, U32x8, Value, Vec3,
+    Closure, Event, F32x8, Frame, Mask, Mask8, Real, Rgb, Sample, Surface, Table, U32x8, Value, Vec3,
     closure::{Transport, Unguarded},
 };
 
@@ -54,12 +54,19 @@ macro_rules! types {
             ((x / omega).0, (x / area).0, l.photometric().0)
         }
 
+        #[unsafe(export_name = concat!("Table_", stringify!($real)))]
+        #[inline(never)]
+        fn table(table: Table<'_>, x: R) -> (R, R) {
+            (table.linear(x), R::lookup(table, x.to_int()))
+        }
+
         let (wo, wi) = (direction(0.6, 0.0, 0.8), direction(0.0, -0.6, 0.8));
         let (surface, _) = black_box(surface(some(0.3), black_box(&lobes::examples())));
         let (_, sample, _) = black_box(closure(&surface, wo, wi, [some(0.1), some(0.5), some(0.9)]));
         black_box(unguarded(&surface, wo, wi, &sample.event));
         black_box(frame(wo, wi, direction(1.0, 2.0, 3.0)));
         black_box(rgb(colour(0.5), colour(0.2)));
+        black_box(table(Table::new(black_box(&[0.5, 0.25]), 0), some(0.7)));
         black_box(units(Flux(some(1.0)), SolidAngle(some(2.0)), Area(some(3.0)), Radiance(colour(0.5))));
     }};
 }
