@@ -22,7 +22,7 @@ const NUMBERS: [&str; 3] = ["f32", "f64", "F32x8"];
 /// that instruments ask.
 const METHODS: [&str; 7] = ["read", "eval", "sample", "delta", "closure", "albedo_estimate", "claims"];
 /// Types whose methods the proof calls in one function per number.
-const TYPES: [&str; 7] = ["Closure", "Unguarded", "Surface", "Surface_claims", "Frame", "Rgb", "units"];
+const TYPES: [&str; 8] = ["Closure", "Unguarded", "Surface", "Surface_claims", "Frame", "Rgb", "Table", "units"];
 /// Functions that have no number, and what a program without std must bring along.
 const OTHERS: [&str; 5] = ["lanes", "prove", "_start", "memcpy", "memset"];
 /// What the panic handler calls.

@@ -20,11 +20,20 @@ pub struct Interface<R> {
 /// Cosine of the refracted direction by Snell's law, eta = η_t/η_i > 0 seen from wo's side; 0 in total reflection.
 #[inline(always)]
 pub fn refracted_cosine<R: Real>(cos_o: R, eta: R) -> R {
-    // η² − sin²θ. Near η = 1 that cancels for grazing cosines, where (η − 1)(η + 1) + cos²θ does not.
-    let sin2_o = (R::ONE - cos_o) * (R::ONE + cos_o);
-    let near = eta.gt(R::lit(0.5)) & eta.lt(R::lit(2.0));
-    let excess = R::select(near, (eta - R::ONE).mul_add(eta + R::ONE, cos_o * cos_o), eta.mul_add(eta, -sin2_o));
-    (excess / (eta * eta)).max(R::ZERO).sqrt()
+    let [cos_t] = R::named(
+        "refracted_cosine",
+        [cos_o, eta],
+        #[inline(always)]
+        |[cos_o, eta]| {
+            // η² − sin²θ. Near η = 1 that cancels for grazing cosines, where (η − 1)(η + 1) + cos²θ does not.
+            let sin2_o = (R::ONE - cos_o) * (R::ONE + cos_o);
+            let near = eta.gt(R::lit(0.5)) & eta.lt(R::lit(2.0));
+            let excess =
+                R::select(near, (eta - R::ONE).mul_add(eta + R::ONE, cos_o * cos_o), eta.mul_add(eta, -sin2_o));
+            [(excess / (eta * eta)).max(R::ZERO).sqrt()]
+        },
+    );
+    cos_t
 }
 
 /// An interface between two dielectrics met under the angles of these cosines, in [0, 1], which obey Snell's law for
@@ -35,17 +44,25 @@ pub fn refracted_cosine<R: Real>(cos_o: R, eta: R) -> R {
 /// $(r_\parallel^2 + r_\perp^2)/2$; and $1 - r^2 = 4 \eta c_o c_t/(\dots)^2$ for what is transmitted.
 #[inline(always)]
 pub fn interface<R: Real>(cos_o: R, cos_t: R, eta: R) -> Interface<R> {
-    let (along, across) = (eta.mul_add(cos_o, cos_t).recip(), eta.mul_add(cos_t, cos_o).recip());
-    let parallel = (eta * cos_o - cos_t) * along;
-    let perpendicular = (cos_o - eta * cos_t) * across;
-    let half = R::lit(0.5);
-    let through = R::lit(4.0) * eta * cos_o * cos_t;
-    // Both cosines 0 or nearly: an index matched at grazing. Everything is reflected.
-    let total = cos_t.le(R::ZERO) | !along.is_finite() | !across.is_finite();
-    Interface {
-        reflected: R::select(total, R::ONE, (parallel.sqr() + perpendicular.sqr()) * half).min(R::ONE),
-        transmitted: ((through * along * along + through * across * across) * half).min(R::ONE).or_zero(!total),
-    }
+    let [reflected, transmitted] = R::named(
+        "interface",
+        [cos_o, cos_t, eta],
+        #[inline(always)]
+        |[cos_o, cos_t, eta]| {
+            let (along, across) = (eta.mul_add(cos_o, cos_t).recip(), eta.mul_add(cos_t, cos_o).recip());
+            let parallel = (eta * cos_o - cos_t) * along;
+            let perpendicular = (cos_o - eta * cos_t) * across;
+            let half = R::lit(0.5);
+            let through = R::lit(4.0) * eta * cos_o * cos_t;
+            // Both cosines 0 or nearly: an index matched at grazing. Everything is reflected.
+            let total = cos_t.le(R::ZERO) | !along.is_finite() | !across.is_finite();
+            [
+                R::select(total, R::ONE, (parallel.sqr() + perpendicular.sqr()) * half).min(R::ONE),
+                ((through * along * along + through * across * across) * half).min(R::ONE).or_zero(!total),
+            ]
+        },
+    );
+    Interface { reflected, transmitted }
 }
 
 /// Reflectance of an interface between two dielectrics at cos_o in [0, 1], eta = η_t/η_i > 0 seen from wo's side. 1 beyond the
@@ -110,6 +127,21 @@ impl<R: Real> ConductorAngle<R> {
     /// where nothing else could say how much is reflected.
     #[inline(always)]
     fn fraction(self, eta: R, k: R) -> (R, R) {
+        let args = [self.cos2, self.sin2, self.sin4, self.scaled_cos, eta, k];
+        let [numerator, denominator] = R::named(
+            "conductor_fraction",
+            args,
+            #[inline(always)]
+            |[cos2, sin2, sin4, scaled_cos, eta, k]| {
+                let (numerator, denominator) = Self { cos2, sin2, sin4, scaled_cos }.fraction_text(eta, k);
+                [numerator, denominator]
+            },
+        );
+        (numerator, denominator)
+    }
+
+    #[inline(always)]
+    fn fraction_text(self, eta: R, k: R) -> (R, R) {
         // Of the material alone: η² − k² − 1, with which t does not cancel for η near 1; and where it is near −1, what rounding
         // it has lost, so that t does not cancel for small η either.
         let constant = (-k).mul_add(k, eta.mul_add(eta, -R::ONE));
@@ -136,9 +168,17 @@ impl<R: Real> ConductorAngle<R> {
 /// Schlick's approximation: f0 + (1 − f0)(1 − cosθ)⁵. Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering".
 #[inline(always)]
 pub fn schlick<R: Real>(cos_o: R, f0: R) -> R {
-    let m = (R::ONE - cos_o).max(R::ZERO);
-    let m2 = m * m;
-    (R::ONE - f0).mul_add(m2 * m2 * m, f0)
+    let [reflectance] = R::named(
+        "schlick",
+        [cos_o, f0],
+        #[inline(always)]
+        |[cos_o, f0]| {
+            let m = (R::ONE - cos_o).max(R::ZERO);
+            let m2 = m * m;
+            [(R::ONE - f0).mul_add(m2 * m2 * m, f0)]
+        },
+    );
+    reflectance
 }
 
 /// Schlick's curve bent through `tint` times its own value at cosθ = 1/7 (82°):
@@ -146,10 +186,18 @@ pub fn schlick<R: Real>(cos_o: R, f0: R) -> R {
 /// Kutz, Hašan & Edmondson 2021, "Novel aspects of the Adobe Standard Material", after Lazányi & Szirmay-Kalos 2005.
 #[inline(always)]
 pub fn f82<R: Real>(cos_o: R, f0: R, tint: R) -> R {
-    let m = (R::ONE - cos_o).max(R::ZERO);
-    let m2 = m * m;
-    let m5 = m2 * m2 * m;
-    (f82_bend(f0, tint) * cos_o * m).mul_add(-m5, (R::ONE - f0).mul_add(m5, f0)).max(R::ZERO)
+    let [reflectance] = R::named(
+        "f82",
+        [cos_o, f0, tint],
+        #[inline(always)]
+        |[cos_o, f0, tint]| {
+            let m = (R::ONE - cos_o).max(R::ZERO);
+            let m2 = m * m;
+            let m5 = m2 * m2 * m;
+            [(f82_bend(f0, tint) * cos_o * m).mul_add(-m5, (R::ONE - f0).mul_add(m5, f0)).max(R::ZERO)]
+        },
+    );
+    reflectance
 }
 
 /// b of [`f82`]: by how much cosθ(1 − cosθ)⁶ bends Schlick's curve.

@@ -4,25 +4,36 @@
 //! all ones or all zeros per lane, so that `and`, `or` and blends agree on what true means. `wide`'s own `min` and `max`
 //! cost three instructions and hide NaNs; ours are the single instruction, with the rule of [`Real::min`].
 
-use crate::real::{Mask, Precision, Real};
+use crate::real::{LARGEST_INT, Mask, Precision, Real, Recordable};
+use crate::table::Table;
 use crate::vec3::Vec3;
-use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, Mul, MulAssign, Neg, Not, Shl, Shr, Sub};
+use core::ops::{
+    Add, AddAssign, BitAnd, BitOr, BitXor, Div, DivAssign, Mul, MulAssign, Neg, Not, Shl, Shr, Sub, SubAssign,
+};
 use wide::{f32x8, i32x8, u32x8};
 
-/// Eight `f32`.
+/// Eight `f32`, in memory like `[f32; 8]` at an address that is a multiple of 32.
+///
+/// ```
+/// use gonio_kernel::{F32x8, Real};
+/// let roots = F32x8::from([1.0, 4.0, 9.0, 16.0, 25.0, 36.0, 49.0, 64.0]).sqrt();
+/// assert_eq!(<[f32; 8]>::from(roots), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(transparent)]
-pub struct F32x8(pub f32x8);
+pub struct F32x8(f32x8);
 
 /// Eight truths, each all ones or all zeros.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub struct Mask8(f32x8);
 
-/// Eight `u32`, with wrapping arithmetic.
-#[derive(Clone, Copy, Debug)]
+/// Eight `u32`, with wrapping arithmetic; in memory like [`F32x8`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[repr(transparent)]
-pub struct U32x8(pub u32x8);
+pub struct U32x8(u32x8);
 
 /// `[f(0), f(1), …]`, one per lane. Written out, because a closure per lane must be inlined to become eight loads.
 #[inline(always)]
@@ -38,6 +49,11 @@ impl F32x8 {
     #[inline(always)]
     pub const fn new(lanes: [f32; 8]) -> Self {
         Self(f32x8::new(lanes))
+    }
+    /// The same as [`F32x8::new`], under the name that goes with [`F32x8::to_array`].
+    #[inline(always)]
+    pub const fn from_array(lanes: [f32; 8]) -> Self {
+        Self::new(lanes)
     }
     /// Lane *i* is `f(i)`.
     #[inline(always)]
@@ -68,6 +84,18 @@ impl F32x8 {
     #[inline(always)]
     pub fn to_array(self) -> [f32; 8] {
         self.0.to_array()
+    }
+    /// The type behind it, for our ray casting alone: no part of what versions promise.
+    #[doc(hidden)]
+    #[inline(always)]
+    pub const fn to_wide(self) -> f32x8 {
+        self.0
+    }
+    /// See [`F32x8::to_wide`].
+    #[doc(hidden)]
+    #[inline(always)]
+    pub const fn from_wide(lanes: f32x8) -> Self {
+        Self(lanes)
     }
     /// The bit patterns of the lanes.
     #[inline(always)]
@@ -110,6 +138,11 @@ impl U32x8 {
     #[inline(always)]
     pub const fn new(lanes: [u32; 8]) -> Self {
         Self(u32x8::new(lanes))
+    }
+    /// The same as [`U32x8::new`], under the name that goes with [`U32x8::to_array`].
+    #[inline(always)]
+    pub const fn from_array(lanes: [u32; 8]) -> Self {
+        Self::new(lanes)
     }
     /// Lane *i* is `f(i)`.
     #[inline(always)]
@@ -213,6 +246,24 @@ lanewise!(F32x8: Add add, Sub sub, Mul mul, Div div);
 lanewise!(U32x8: Add add, Mul mul, BitXor bitxor, BitAnd bitand, BitOr bitor);
 lanewise!(Mask8: BitAnd bitand, BitOr bitor, BitXor bitxor);
 
+macro_rules! arrays {
+    ($($t:ident $element:ident),*) => {$(
+        impl From<[$element; 8]> for $t {
+            #[inline(always)]
+            fn from(lanes: [$element; 8]) -> Self {
+                Self::new(lanes)
+            }
+        }
+        impl From<$t> for [$element; 8] {
+            #[inline(always)]
+            fn from(lanes: $t) -> Self {
+                lanes.to_array()
+            }
+        }
+    )*};
+}
+arrays!(F32x8 f32, U32x8 u32);
+
 impl Shr<u32> for U32x8 {
     type Output = Self;
     #[inline(always)]
@@ -234,18 +285,17 @@ impl Neg for F32x8 {
         Self(-self.0)
     }
 }
-impl AddAssign for F32x8 {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
+macro_rules! assign {
+    ($($op:ident $f:ident $sign:tt),*) => {$(
+        impl $op for F32x8 {
+            #[inline(always)]
+            fn $f(&mut self, other: Self) {
+                *self = *self $sign other;
+            }
+        }
+    )*};
 }
-impl MulAssign for F32x8 {
-    #[inline(always)]
-    fn mul_assign(&mut self, other: Self) {
-        *self = *self * other;
-    }
-}
+assign!(AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *, DivAssign div_assign /);
 impl Not for Mask8 {
     type Output = Self;
     #[inline(always)]
@@ -268,6 +318,7 @@ impl Mask for Mask8 {
     }
 }
 
+impl Recordable for F32x8 {}
 impl Real for F32x8 {
     type Mask = Mask8;
     type Int = U32x8;
@@ -373,71 +424,44 @@ impl Real for F32x8 {
     fn int_select(mask: Mask8, yes: U32x8, no: U32x8) -> U32x8 {
         U32x8::select(mask, yes, no)
     }
+    #[inline(always)]
+    fn to_int(self) -> U32x8 {
+        let inside = self.max(Self::ZERO).min(Self::splat(LARGEST_INT as f32));
+        U32x8(bytemuck::cast(inside.0.fast_trunc_int()))
+    }
+    #[inline(always)]
+    fn from_int(x: U32x8) -> Self {
+        x.to_real()
+    }
+    #[inline(always)]
+    fn lookup(table: Table<'_>, index: U32x8) -> Self {
+        let index = index.to_array();
+        Self::new(index.map(|index| table.at(index)))
+    }
+    #[inline(always)]
+    #[allow(clippy::eq_op)]
+    fn is_finite(self) -> Mask8 {
+        // As for the scalar.
+        (self - self).same(Self::ZERO)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{atan2_turns, erf, erf_inv, exp, exp_m1, ln, ln_1p, pow, sin_cos_turns};
-    use crate::testing::{Random, same_bits, special_values};
+    use crate::testing::results::{physics, reals, triples, truths};
+    use crate::testing::same_bits;
     use std::vec::Vec;
-
-    /// Triples of special values in all combinations, random bits, and ordinary numbers; a multiple of eight.
-    fn triples() -> Vec<[f32; 3]> {
-        let (values, mut random) = (special_values(), Random(10));
-        let each = values.iter().flat_map(|&a| values.iter().map(move |&b| (a, b)));
-        let mut triples: Vec<_> = each.flat_map(|(a, b)| values.iter().map(move |&c| [a, b, c])).collect();
-        triples.extend((0..4096).map(|_| [(); 3].map(|()| f32::from_bits(random.bits() as u32))));
-        triples.extend((0..4096).map(|_| [(); 3].map(|()| 8.0 * random.unit() - 4.0)));
-        triples.truncate(triples.len() / 8 * 8);
-        triples
-    }
-
-    /// Every operation on reals that has a real result, in order.
-    fn reals<R: Real>([a, b, c]: [R; 3]) -> Vec<R> {
-        let mask = a.lt(b);
-        let (mut sum, mut product) = (a, a);
-        sum += b;
-        product *= b;
-        let sums = [a + b, a - b, a * b, a / b, -a, sum, product, a.mul_add(b, c), a.sqr(), a.recip()];
-        let others = [
-            a.sqrt(),
-            a.abs(),
-            a.min(b),
-            a.max(b),
-            a.copysign(b),
-            a.clamp(-1.5, 0.5),
-            a.or_zero(mask),
-            a.negated(mask),
-        ];
-        let chosen = [R::select(mask, a, c), R::select(!mask, a, c), a.round_to_int().0, R::lit(0.1), R::ZERO, R::ONE];
-        let (mantissa, exponent) = a.split_exponent();
-        let bits = [mantissa, exponent, a.ldexp(b.round_to_int().1)];
-        let (sin, cos) = sin_cos_turns(a);
-        let angles = [sin, cos, atan2_turns(a, b)];
-        let functions = [exp(a), exp_m1(a), ln(a), ln_1p(a), pow(a, b), erf(a), erf_inv(a)];
-        sums.into_iter().chain(others).chain(chosen).chain(bits).chain(angles).chain(functions).collect()
-    }
-
-    /// Every operation on reals that has a truth as result, in order.
-    fn truths<R: Real>([a, b, c]: [R; 3]) -> Vec<R::Mask> {
-        let (x, y) = (a.round_to_int().1, b.round_to_int().1);
-        let (lt, le) = (a.lt(b), b.le(c));
-        let compared = [lt, le, a.gt(b), a.ge(b), a.same(b), a.is_finite(), !lt, lt & le, lt | le, lt ^ le];
-        let sum = R::int_add(x, y);
-        let bits = [R::int_bit(x, 0), R::int_bit(x, 1), R::int_bit(x, 21), R::int_bit(sum, 1), R::int_bit(sum, 22)];
-        let whole = bits.into_iter().chain([R::int_same(x, y), R::int_lt(x, y)]);
-        let chosen = [R::int_same(R::int_select(lt, x, R::int(3)), y), R::Mask::splat(true), R::Mask::splat(false)];
-        compared.into_iter().chain(whole).chain(chosen).collect()
-    }
 
     #[test]
     fn every_lane_has_the_bits_of_the_scalar() {
         for eight in triples().chunks_exact(8) {
             let lanes = [0, 1, 2].map(|part| F32x8::new(core::array::from_fn(|lane| eight[lane][part])));
-            let (together, true_together) = (reals(lanes), truths(lanes));
+            let together: Vec<_> = reals(lanes).into_iter().chain(physics(lanes)).collect();
+            let true_together = truths(lanes);
             for (lane, &alone) in eight.iter().enumerate() {
-                for (op, (&x, scalar)) in together.iter().zip(reals(alone)).enumerate() {
+                let scalar = reals(alone).into_iter().chain(physics(alone));
+                for (op, (&x, scalar)) in together.iter().zip(scalar).enumerate() {
                     let x = x.to_array()[lane];
                     assert!(same_bits(x, scalar), "real {op} of {alone:?}: {x:e} in lanes, {scalar:e} alone");
                 }

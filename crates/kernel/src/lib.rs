@@ -24,6 +24,17 @@
 //! let weight = value.f_cos * (1.0 / value.pdf);
 //! assert!((weight.g - 0.5).abs() < 1e-6);
 //! ```
+//!
+//! # Features
+//!
+//! A feature never changes a result.
+//!
+//! - `wide` (on by default): eight lanes, [`F32x8`], and the processor's own square root and fused multiply-add. Without it numbers
+//!   are `f32` and `f64`, and both operations are software: slower, with the bits of a build that has the instructions.
+//! - `glam`, `mint`: [`Vec3`], [`Rgb`] and [`Frame`] convert from and to the vectors and matrices of these crates.
+//! - `bytemuck`: `F32x8` and `U32x8` are `Pod`. `Vec3` and `Rgb` are `AnyBitPattern`: `bytemuck::cast_slice` makes a slice of them
+//!   of bytes or of `[f32; 3]`. They are not `Pod`, which of a generic struct only unsafe code may claim; towards arrays there is
+//!   `From`.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -31,9 +42,11 @@
 extern crate std;
 
 pub mod closure;
+mod conversions;
 pub mod energy;
 pub mod frame;
 pub mod fresnel;
+#[cfg(feature = "wide")]
 mod lanes;
 pub mod lobe;
 pub mod math;
@@ -43,6 +56,7 @@ pub mod model;
 mod real;
 mod rgb;
 pub mod surface;
+pub mod table;
 #[cfg(test)]
 mod testing;
 pub mod units;
@@ -51,12 +65,16 @@ pub mod warp;
 
 pub use closure::{BsdfSample, Closure};
 pub use frame::Frame;
+#[cfg(feature = "wide")]
 pub use lanes::{F32x8, Mask8, U32x8, each_lane};
 pub use lobe::{Event, Lobe, Properties, Sample, Transport, Value};
 pub use model::{Model, Parameters};
+#[doc(hidden)]
+pub use real::Recordable;
 pub use real::{Mask, Precision, Real};
 pub use rgb::Rgb;
 pub use surface::{Alpha, Roughness, Surface};
+pub use table::Table;
 pub use vec3::Vec3;
 
 /// Runs the example of the README.

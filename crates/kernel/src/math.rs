@@ -22,6 +22,17 @@ use crate::real::{Precision, Real};
 /// polynomials: at most 2 ulp, or 2⁻²⁴ absolute in `f32` (2⁻⁵³ in `f64`) near a zero.
 #[inline(always)]
 pub fn sin_cos_turns<R: Real>(u: R) -> (R, R) {
+    let [sin, cos] = R::named(
+        "sin_cos_turns",
+        [u],
+        #[inline(always)]
+        |[u]| sin_cos_turns_text(u).into(),
+    );
+    (sin, cos)
+}
+
+#[inline(always)]
+fn sin_cos_turns_text<R: Real>(u: R) -> (R, R) {
     let (quarters, quadrant) = (u * R::lit(4.0)).round_to_int();
     let x = quarters.mul_add(R::lit(-0.25), u) * R::lit(core::f64::consts::TAU);
     let z = x * x;
@@ -38,6 +49,17 @@ pub fn sin_cos_turns<R: Real>(u: R) -> (R, R) {
 /// where sign bits decide as in IEEE 754's atan2. For finite x and y whose sum does not overflow; at most 4 ulp.
 #[inline(always)]
 pub fn atan2_turns<R: Real>(y: R, x: R) -> R {
+    let [value] = R::named(
+        "atan2_turns",
+        [y, x],
+        #[inline(always)]
+        |[y, x]| [atan2_turns_text(y, x)],
+    );
+    value
+}
+
+#[inline(always)]
+fn atan2_turns_text<R: Real>(y: R, x: R) -> R {
     let (ax, ay) = (x.abs(), y.abs());
     let (low, high) = (ax.min(ay), ax.max(ay));
     // Within an eighth of a turn; beyond half of that, tan(a − ⅛) = (tan a − 1)/(tan a + 1) brings it nearer to 0.

@@ -3,9 +3,11 @@
 //! Two rules make eight lanes equal the scalar bit for bit. `min`, `max` and `select` are written here, with one
 //! answer for NaN and for the sign of zero (std leaves both open). `sqrt` and `mul_add` of a scalar are lane 0 of
 //! `wide`'s narrow types: `core` has neither, and std's fused multiply-add rounds differently where the target has none.
+//! Without the feature `wide` both are software that rounds once, as the instructions do: a feature never changes a result.
 
+use crate::table::Table;
 use core::fmt::Debug;
-use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, Mul, MulAssign, Neg, Not, Sub};
+use core::ops::{Add, AddAssign, BitAnd, BitOr, BitXor, Div, DivAssign, Mul, MulAssign, Neg, Not, Sub, SubAssign};
 
 /// The truth of a comparison, lane by lane: `bool` for a scalar.
 pub trait Mask:
@@ -28,9 +30,30 @@ pub enum Precision {
     Double,
 }
 
+/// What seals [`Real`]: only a crate that records the kernel's operations implements it, and it is no part of what versions promise.
+///
+/// A recorder answers [`Mask::any`] with true and [`Mask::all`] with false, so that the text of both branches is recorded. Therefore
+/// control flow on values asks only "is there any work?": the result has the same bits whichever way the branch goes.
+#[doc(hidden)]
+pub trait Recordable: Copy {
+    /// f(args), a function worth keeping under its name in what is recorded. Everybody else's is transparent.
+    ///
+    /// `f` uses nothing but its arguments and constants, and is marked `#[inline(always)]`, without which long ones become calls.
+    #[inline(always)]
+    fn named<const N: usize, const M: usize>(
+        name: &'static str,
+        args: [Self; N],
+        f: impl FnOnce([Self; N]) -> [Self; M],
+    ) -> [Self; M] {
+        let _ = name;
+        f(args)
+    }
+}
+
 /// A real number: `f32`, `f64`, or several `f32` in lanes.
 pub trait Real:
-    Copy
+    Recordable
+    + Copy
     + Debug
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -38,7 +61,9 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
     + AddAssign
+    + SubAssign
     + MulAssign
+    + DivAssign
     + 'static
 {
     /// The result of a comparison.
@@ -61,7 +86,7 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// |self|
     fn abs(self) -> Self;
-    /// self·a + b, fused where the build's target has the instruction.
+    /// self·a + b, fused where the build's target has the instruction, and always without the feature `wide`.
     fn mul_add(self, a: Self, b: Self) -> Self;
     /// The smaller of two: `if self < b { self } else { b }`, so a NaN on either side gives `b`.
     fn min(self, b: Self) -> Self;
@@ -97,6 +122,21 @@ pub trait Real:
     fn int_lt(x: Self::Int, y: Self::Int) -> Self::Mask;
     /// `yes` where `mask`, `no` elsewhere.
     fn int_select(mask: Self::Mask, yes: Self::Int, no: Self::Int) -> Self::Int;
+    /// The integer part of self limited to [0, 2²² − 1]; a NaN gives 0. Exact: nothing is rounded.
+    ///
+    /// ```
+    /// # use gonio_kernel::Real;
+    /// assert_eq!([3.99_f32, -5.0, f32::NAN, 1e30].map(Real::to_int), [3, 0, 0, 4_194_303]);
+    /// ```
+    fn to_int(self) -> Self::Int;
+    /// The real nearest to an integer below 2³¹.
+    fn from_int(x: Self::Int) -> Self;
+    /// The value of `table` at `index`: beyond its end the last one, and 0 if it has none.
+    ///
+    /// Lanes cannot gather: each does a look-up of its own. So tables belong into what is prepared once, not into what depends on wi.
+    fn lookup(table: Table<'_>, index: Self::Int) -> Self;
+    /// Neither NaN nor infinite.
+    fn is_finite(self) -> Self::Mask;
 
     /// self > b, false for NaN.
     #[inline(always)]
@@ -112,13 +152,6 @@ pub trait Real:
     #[inline(always)]
     fn or_zero(self, mask: Self::Mask) -> Self {
         Self::select(mask, self, Self::ZERO)
-    }
-    /// Neither NaN nor infinite.
-    #[inline(always)]
-    #[allow(clippy::eq_op)]
-    fn is_finite(self) -> Self::Mask {
-        // inf − inf and NaN − NaN are NaN, which equals nothing.
-        (self - self).same(Self::ZERO)
     }
     /// self²
     #[inline(always)]
@@ -153,7 +186,7 @@ impl Mask for bool {
 }
 
 macro_rules! scalar_real {
-    ($t:ty, $bits:ty, $narrow:ident, $precision:ident, $sign:expr, $magic:expr, $fraction:expr) => {
+    ($t:ty, $bits:ty, $narrow:ident, [$sqrt:ident, $fma:ident], $precision:ident, $sign:expr, $magic:expr, $fraction:expr) => {
         impl Real for $t {
             type Mask = bool;
             type Int = u32;
@@ -168,7 +201,10 @@ macro_rules! scalar_real {
             }
             #[inline(always)]
             fn sqrt(self) -> $t {
-                wide::$narrow::splat(self).sqrt().to_array()[0]
+                #[cfg(feature = "wide")]
+                return wide::$narrow::splat(self).sqrt().to_array()[0];
+                #[cfg(not(feature = "wide"))]
+                return libm::$sqrt(self);
             }
             #[inline(always)]
             fn abs(self) -> $t {
@@ -176,7 +212,11 @@ macro_rules! scalar_real {
             }
             #[inline(always)]
             fn mul_add(self, a: $t, b: $t) -> $t {
-                wide::$narrow::splat(self).mul_add(wide::$narrow::splat(a), wide::$narrow::splat(b)).to_array()[0]
+                #[cfg(feature = "wide")]
+                return wide::$narrow::splat(self).mul_add(wide::$narrow::splat(a), wide::$narrow::splat(b)).to_array()
+                    [0];
+                #[cfg(not(feature = "wide"))]
+                return libm::$fma(self, a, b);
             }
             #[inline(always)]
             fn min(self, b: $t) -> $t {
@@ -252,8 +292,30 @@ macro_rules! scalar_real {
             fn int_select(mask: bool, yes: u32, no: u32) -> u32 {
                 if mask { yes } else { no }
             }
+            #[inline(always)]
+            fn to_int(self) -> u32 {
+                Real::min(Real::max(self, 0.0), LARGEST_INT as $t) as u32
+            }
+            #[inline(always)]
+            fn from_int(x: u32) -> $t {
+                x.cast_signed() as $t // signed as in lanes
+            }
+            #[inline(always)]
+            fn lookup(table: Table<'_>, index: u32) -> $t {
+                table.at(index).into()
+            }
+            #[inline(always)]
+            #[allow(clippy::eq_op)]
+            fn is_finite(self) -> bool {
+                // inf − inf and NaN − NaN are NaN, which equals nothing.
+                self - self == 0.0
+            }
         }
+        impl Recordable for $t {}
     };
 }
-scalar_real!(f32, u32, f32x4, Single, 0x8000_0000_u32, 12_582_912.0, 23); // 1.5·2²³
-scalar_real!(f64, u64, f64x2, Double, 0x8000_0000_0000_0000_u64, 6_755_399_441_055_744.0, 52); // 1.5·2⁵²
+
+/// The largest result of [`Real::to_int`]: every real up to it has its integer part among the reals of `f32`.
+pub(crate) const LARGEST_INT: u32 = (1 << 22) - 1;
+scalar_real!(f32, u32, f32x4, [sqrtf, fmaf], Single, 0x8000_0000_u32, 12_582_912.0, 23); // 1.5·2²³
+scalar_real!(f64, u64, f64x2, [sqrt, fma], Double, 0x8000_0000_0000_0000_u64, 6_755_399_441_055_744.0, 52); // 1.5·2⁵²

@@ -1,10 +1,23 @@
 //! A colour of three linear Rec. 709 channels: a reflectance, a radiance, a weight.
 
 use crate::real::Real;
-use core::ops::{Add, AddAssign, Mul};
+use core::iter::Sum;
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Sub, SubAssign};
 
 /// Red, green and blue, linear, Rec. 709 primaries.
+///
+/// Colours are added, subtracted, multiplied and divided channel by channel, and multiplied and divided by numbers.
+///
+/// ```
+/// use gonio_kernel::Rgb;
+/// let (white, brass) = (Rgb::splat(1.0_f32), Rgb::new(0.5, 0.25, 0.125));
+/// assert_eq!(white - brass, Rgb::new(0.5, 0.75, 0.875));
+/// assert_eq!(brass / brass, white);
+/// assert_eq!(2.0 * brass, brass / 0.5);
+/// assert_eq!([brass, brass].iter().sum::<Rgb<f32>>(), brass * 2.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::AnyBitPattern))]
 #[repr(C)]
 pub struct Rgb<R> {
     /// Red.
@@ -49,6 +62,34 @@ impl<R: Real> Rgb<R> {
     pub fn largest(self) -> R {
         self.r.max(self.g).max(self.b)
     }
+    /// The smaller of each pair of channels, chosen as by [`Real::min`].
+    ///
+    /// ```
+    /// use gonio_kernel::Rgb;
+    /// let (a, b) = (Rgb::new(0.1_f32, 0.5, 0.9), Rgb::splat(0.5));
+    /// assert_eq!((a.min(b), a.max(b)), (Rgb::new(0.1, 0.5, 0.5), Rgb::new(0.5, 0.5, 0.9)));
+    /// ```
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        Self::new(self.r.min(other.r), self.g.min(other.g), self.b.min(other.b))
+    }
+    /// The larger of each pair of channels, chosen as by [`Real::max`].
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        Self::new(self.r.max(other.r), self.g.max(other.g), self.b.max(other.b))
+    }
+    /// (1 − t) self + t other: exactly self at t = 0 and other at t = 1, if both are finite.
+    ///
+    /// ```
+    /// use gonio_kernel::Rgb;
+    /// let half = Rgb::splat(0.0_f32).lerp(Rgb::new(1.0, 2.0, 4.0), 0.5);
+    /// assert_eq!(half, Rgb::new(0.5, 1.0, 2.0));
+    /// ```
+    #[inline(always)]
+    pub fn lerp(self, other: Self, t: R) -> Self {
+        let mix = |a: R, b: R| t.mul_add(b, (R::ONE - t) * a);
+        Self::new(mix(self.r, other.r), mix(self.g, other.g), mix(self.b, other.b))
+    }
     /// self where `mask`, black elsewhere.
     #[inline(always)]
     pub fn or_zero(self, mask: R::Mask) -> Self {
@@ -67,31 +108,83 @@ impl<R: Real> Rgb<R> {
     }
 }
 
-impl<R: Real> Add for Rgb<R> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self::new(self.r + other.r, self.g + other.g, self.b + other.b)
+macro_rules! operators {
+    ($($op:ident $f:ident $assign:ident $assign_f:ident $sign:tt),*) => {$(
+        /// Channel by channel.
+        impl<R: Real> $op for Rgb<R> {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, other: Self) -> Self {
+                Self::new(self.r $sign other.r, self.g $sign other.g, self.b $sign other.b)
+            }
+        }
+        /// Channel by channel.
+        impl<R: Real> $assign for Rgb<R> {
+            #[inline(always)]
+            fn $assign_f(&mut self, other: Self) {
+                *self = *self $sign other;
+            }
+        }
+    )*};
+}
+operators!(
+    Add add AddAssign add_assign +,
+    Sub sub SubAssign sub_assign -,
+    Mul mul MulAssign mul_assign *,
+    Div div DivAssign div_assign /
+);
+
+macro_rules! by_number {
+    ($($op:ident $f:ident $assign:ident $assign_f:ident $sign:tt),*) => {$(
+        /// Each channel by the same number; a division is a true one.
+        impl<R: Real> $op<R> for Rgb<R> {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, k: R) -> Self {
+                self.map(|x| x $sign k)
+            }
+        }
+        /// Each channel by the same number.
+        impl<R: Real> $assign<R> for Rgb<R> {
+            #[inline(always)]
+            fn $assign_f(&mut self, k: R) {
+                *self = *self $sign k;
+            }
+        }
+    )*};
+}
+by_number!(Mul mul MulAssign mul_assign *, Div div DivAssign div_assign /);
+
+macro_rules! number_times {
+    ($($(#[$cfg:meta])* $number:ty),*) => {$(
+        /// Each channel times the number.
+        $(#[$cfg])*
+        impl Mul<Rgb<$number>> for $number {
+            type Output = Rgb<$number>;
+            #[inline(always)]
+            fn mul(self, c: Rgb<$number>) -> Rgb<$number> {
+                c * self
+            }
+        }
+    )*};
+}
+number_times!(
+    f32,
+    f64,
+    #[cfg(feature = "wide")]
+    crate::lanes::F32x8
+);
+
+/// From black on, in order.
+impl<R: Real> Sum for Rgb<R> {
+    fn sum<I: Iterator<Item = Self>>(colours: I) -> Self {
+        colours.fold(Self::zero(), |sum, c| sum + c)
     }
 }
-impl<R: Real> AddAssign for Rgb<R> {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-impl<R: Real> Mul for Rgb<R> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        Self::new(self.r * other.r, self.g * other.g, self.b * other.b)
-    }
-}
-impl<R: Real> Mul<R> for Rgb<R> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, k: R) -> Self {
-        self.map(|x| x * k)
+/// From black on, in order.
+impl<'a, R: Real> Sum<&'a Self> for Rgb<R> {
+    fn sum<I: Iterator<Item = &'a Self>>(colours: I) -> Self {
+        colours.copied().sum()
     }
 }
 impl<R: Real> From<R> for Rgb<R> {
@@ -121,6 +214,28 @@ mod tests {
         assert!((Rgb::splat(1.0_f64).luminance() - 1.0).abs() < 1e-15);
         assert_eq!(Rgb::new(0.0, 1.0, 0.0).luminance(), 0.7152_f64);
         assert_eq!(Rgb::new(0.1_f32, 0.3, 0.2).largest(), 0.3);
+    }
+
+    #[test]
+    fn operators_work_channel_by_channel_and_assign_the_same() {
+        let (a, b) = (Rgb::new(1.0_f32, 2.0, 3.0), Rgb::new(0.5, 4.0, 0.25));
+        assert_eq!((a - b, a / b), (Rgb::new(0.5, -2.0, 2.75), Rgb::new(2.0, 0.5, 12.0)));
+        assert_eq!((a / 2.0, 2.0 * a), (Rgb::new(0.5, 1.0, 1.5), a + a));
+        let assigned = |change: fn(&mut Rgb<f32>, Rgb<f32>)| {
+            let mut c = a;
+            change(&mut c, b);
+            c
+        };
+        assert_eq!((assigned(|a, b| *a += b), assigned(|a, b| *a -= b)), (a + b, a - b));
+        assert_eq!((assigned(|a, b| *a *= b), assigned(|a, b| *a /= b)), (a * b, a / b));
+        assert_eq!((assigned(|a, b| *a *= b.r), assigned(|a, b| *a /= b.g)), (a * b.r, a / b.g));
+        assert_eq!([a, b].into_iter().sum::<Rgb<f32>>(), a + b);
+    }
+
+    #[test]
+    fn a_mixture_begins_and_ends_with_its_parts() {
+        let (a, b) = (Rgb::new(0.1_f32, 1e-20, 3e7), Rgb::new(0.7, 0.3, 1e-9));
+        assert_eq!((a.lerp(b, 0.0), a.lerp(b, 1.0)), (a, b));
     }
 
     #[test]

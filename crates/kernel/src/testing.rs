@@ -1,5 +1,12 @@
 //! What the unit tests share: repeatable random numbers, the numbers that break things, and comparisons.
 
+mod builds;
+mod mixed_lanes;
+pub(crate) mod results;
+
+#[allow(unused_imports)] // for the tests of lobes and closures
+pub(crate) use mixed_lanes::MixedLanes;
+
 use crate::lobe::{Lobe, Sample, Transport, Value};
 use crate::real::Real;
 use crate::vec3::Vec3;

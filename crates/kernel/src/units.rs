@@ -150,7 +150,7 @@ macro_rules! law {
     };
     ($a:ident / $b:ident = $c:ident) => {
         #[doc = concat!(stringify!($c), " = ", stringify!($a), " / ", stringify!($b), ".")]
-        #[allow(clippy::suspicious_arithmetic_impl)] // a colour has no division, only a product with the reciprocal
+        #[allow(clippy::suspicious_arithmetic_impl)] // by one reciprocal, for colours too
         impl<S: Real, T: Mul<S, Output = T>> Div<$b<S>> for $a<T> {
             type Output = $c<T>;
             fn div(self, other: $b<S>) -> $c<T> {

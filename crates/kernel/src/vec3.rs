@@ -1,10 +1,21 @@
 //! A vector of three reals: a direction, a point or a displacement, in whichever frame the caller keeps it.
 
 use crate::real::Real;
-use core::ops::{Add, Mul, Neg, Sub};
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// Three reals. `Vec3<f32>` is 12 bytes, `repr(C)`, and converts from and to `[f32; 3]`.
+///
+/// Vectors are added and subtracted, and multiplied and divided by numbers. Products of two are [`Vec3::dot`], [`Vec3::cross`] and
+/// [`Vec3::mul_each`].
+///
+/// ```
+/// use gonio_kernel::Vec3;
+/// let (a, mut b) = (Vec3::new(1.0_f32, 2.0, 4.0), Vec3::unit_z());
+/// b += 2.0 * a;
+/// assert_eq!(b / 2.0 - a, Vec3::new(0.0, 0.0, 0.5));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::AnyBitPattern))]
 #[repr(C)]
 pub struct Vec3<R> {
     /// Along the first axis (in the local frame: the tangent).
@@ -107,32 +118,74 @@ impl<R: Real> Vec3<R> {
     }
 }
 
-impl<R: Real> Add for Vec3<R> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
-    }
+macro_rules! operators {
+    ($($op:ident $f:ident $assign:ident $assign_f:ident $sign:tt),*) => {$(
+        /// Component by component.
+        impl<R: Real> $op for Vec3<R> {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, other: Self) -> Self {
+                Self::new(self.x $sign other.x, self.y $sign other.y, self.z $sign other.z)
+            }
+        }
+        /// Component by component.
+        impl<R: Real> $assign for Vec3<R> {
+            #[inline(always)]
+            fn $assign_f(&mut self, other: Self) {
+                *self = *self $sign other;
+            }
+        }
+    )*};
 }
-impl<R: Real> Sub for Vec3<R> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
-    }
+operators!(Add add AddAssign add_assign +, Sub sub SubAssign sub_assign -);
+
+macro_rules! by_number {
+    ($($op:ident $f:ident $assign:ident $assign_f:ident $sign:tt),*) => {$(
+        /// Each component by the same number; a division is a true one.
+        impl<R: Real> $op<R> for Vec3<R> {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, k: R) -> Self {
+                Self::new(self.x $sign k, self.y $sign k, self.z $sign k)
+            }
+        }
+        /// Each component by the same number.
+        impl<R: Real> $assign<R> for Vec3<R> {
+            #[inline(always)]
+            fn $assign_f(&mut self, k: R) {
+                *self = *self $sign k;
+            }
+        }
+    )*};
 }
+by_number!(Mul mul MulAssign mul_assign *, Div div DivAssign div_assign /);
+
+macro_rules! number_times {
+    ($($(#[$cfg:meta])* $number:ty),*) => {$(
+        /// Each component times the number.
+        $(#[$cfg])*
+        impl Mul<Vec3<$number>> for $number {
+            type Output = Vec3<$number>;
+            #[inline(always)]
+            fn mul(self, v: Vec3<$number>) -> Vec3<$number> {
+                v * self
+            }
+        }
+    )*};
+}
+number_times!(
+    f32,
+    f64,
+    #[cfg(feature = "wide")]
+    crate::lanes::F32x8
+);
+
+/// The opposite direction.
 impl<R: Real> Neg for Vec3<R> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
         Self::new(-self.x, -self.y, -self.z)
-    }
-}
-impl<R: Real> Mul<R> for Vec3<R> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, k: R) -> Self {
-        Self::new(self.x * k, self.y * k, self.z * k)
     }
 }
 impl<R> From<[R; 3]> for Vec3<R> {
@@ -167,6 +220,18 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn assigning_operators_do_what_the_others_do() {
+        let (a, b, k) = (Vec3::new(1.0_f64, 2.0, 3.0), Vec3::new(0.5, 4.0, 0.25), 8.0);
+        let (mut sum, mut difference, mut product, mut quotient) = (a, a, a, a);
+        sum += b;
+        difference -= b;
+        product *= k;
+        quotient /= k;
+        assert_eq!((sum, difference, product, quotient), (a + b, a - b, a * k, a / k));
+        assert_eq!((k * a, a / k), (Vec3::new(8.0, 16.0, 24.0), Vec3::new(0.125, 0.25, 0.375)));
     }
 
     #[test]

@@ -209,7 +209,7 @@ impl Placed {
             }
         }
         let index = std::array::from_fn(|lane| self.first + block.index(lane));
-        rows[9] = U32x8::new(index).as_real().0;
+        rows[9] = U32x8::new(index).as_real().to_wide();
         rows
     }
 }

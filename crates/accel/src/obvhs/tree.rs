@@ -117,13 +117,13 @@ impl<'a> Cell<'a> {
 
     #[inline(always)]
     pub(super) fn children(self) -> U32x8 {
-        F32x8(self.0[6]).to_bits()
+        F32x8::from_wide(self.0[6]).to_bits()
     }
 
     /// The order of an octant, packed.
     #[inline(always)]
     pub(super) fn order(self, octant: usize) -> u32 {
-        F32x8(self.0[7]).lane(octant).to_bits()
+        F32x8::from_wide(self.0[7]).lane(octant).to_bits()
     }
 
     /// The slots of a set, the farthest first.
@@ -136,14 +136,14 @@ impl<'a> Cell<'a> {
 
     #[inline(always)]
     pub(super) fn corners(self) -> [Vec3<F32x8>; 3] {
-        let r = self.0.map(F32x8);
+        let r = self.0.map(F32x8::from_wide);
         [Vec3::new(r[0], r[1], r[2]), Vec3::new(r[3], r[4], r[5]), Vec3::new(r[6], r[7], r[8])]
     }
 
     /// The lanes of a block that are used.
     #[inline(always)]
     pub(super) fn used(self) -> u32 {
-        (!F32x8(self.0[9]).to_bits().same(U32x8::splat(self.index(0)))).to_bits() | 1
+        (!F32x8::from_wide(self.0[9]).to_bits().same(U32x8::splat(self.index(0)))).to_bits() | 1
     }
 
     /// The same, one after the other.
@@ -155,7 +155,7 @@ impl<'a> Cell<'a> {
     /// The place of a triangle of the block.
     #[inline(always)]
     pub(super) fn index(self, lane: usize) -> u32 {
-        F32x8(self.0[9]).lane(lane).to_bits()
+        F32x8::from_wide(self.0[9]).lane(lane).to_bits()
     }
 }
 
@@ -336,7 +336,7 @@ impl Tree {
     /// Fills in a node whose children are in the slots where they stay.
     pub(super) fn settle_node(&mut self, node: Child, children: &[(Box3, Child)]) {
         let mut rows = node_of(children);
-        rows[7] = orders_of(children).0;
+        rows[7] = orders_of(children).to_wide();
         self.cells.set(node.place(), rows);
     }
 
@@ -355,7 +355,7 @@ impl Tree {
             row[triangles.len()..].fill(first);
         }
         let [ax, ay, az, bx, by, bz, cx, cy, cz] = rows.map(f32x8::new);
-        self.cells.push([ax, ay, az, bx, by, bz, cx, cy, cz, U32x8::new(index).as_real().0]);
+        self.cells.push([ax, ay, az, bx, by, bz, cx, cy, cz, U32x8::new(index).as_real().to_wide()]);
         Child((self.cells.rows().len() - 1) as u32 | LEAF)
     }
 }
@@ -483,7 +483,7 @@ fn node_of(children: &[(Box3, Child)]) -> Rows {
         F32x8::ZERO,
         F32x8::ZERO,
     ]
-    .map(|row| row.0)
+    .map(F32x8::to_wide)
 }
 
 /// The orders of children for each octant.
@@ -506,7 +506,7 @@ impl Cell<'_> {
     /// The children of a node and their boxes.
     pub(super) fn slots(self) -> impl Iterator<Item = (Box3, Child)> {
         let corner = |side: usize, slot: usize| {
-            let [x, y, z] = [0, 2, 4].map(|axis| F32x8(self.0[axis + side]).lane(slot));
+            let [x, y, z] = [0, 2, 4].map(|axis| F32x8::from_wide(self.0[axis + side]).lane(slot));
             Vec4::new(x, y, z, 1.0)
         };
         let children = self.children();

@@ -6,8 +6,8 @@ use gonio_kernel::lobe::{AnyLobe, Layering, Lobe};
 use gonio_kernel::surface::SurfaceError;
 use gonio_kernel::units::{Area, Flux, Radiance, SolidAngle};
 use gonio_kernel::{
-    BsdfSample, Closure, F32x8, Frame, Mask, Mask8, Parameters, Properties, Rgb, Sample, Surface, Transport, U32x8, Value, Vec3,
-    closure::Unguarded,
+    BsdfSample, Closure, F32x8, Frame, Mask, Mask8, Parameters, Properties, Real, Rgb, Sample, Surface, Table, Transport, U32x8,
+    Value, Vec3, closure::Unguarded,
 };
 
 macro_rules! types {
@@ -67,6 +67,12 @@ macro_rules! types {
             ((x / omega).0, (x / area).0, l.photometric().0)
         }
 
+        #[unsafe(export_name = concat!("Table_", stringify!($real)))]
+        #[inline(never)]
+        fn table(table: Table<'_>, x: R) -> (R, R) {
+            (table.linear(x), R::lookup(table, x.to_int()))
+        }
+
         let (wo, wi) = (direction(0.6, 0.0, 0.8), direction(0.0, -0.6, 0.8));
         if let Ok(surface) = black_box(surface(colour(0.3), black_box(&lobes::examples()))) {
             let (_, sample) = black_box(closure(&surface, wo, wi, [some(0.1), some(0.5), some(0.9)]));
@@ -75,6 +81,7 @@ macro_rules! types {
         }
         black_box(frame(wo, wi, direction(1.0, 2.0, 3.0)));
         black_box(rgb(colour(0.5), colour(0.2)));
+        black_box(table(Table::new(black_box(&[0.5, 0.25]), 0), some(0.7)));
         black_box(units(Flux(some(1.0)), SolidAngle(some(2.0)), Area(some(3.0)), Radiance(colour(0.5))));
     }};
 }

@@ -11,6 +11,17 @@ use crate::real::{Mask, Precision, Real};
 /// erf x: at most 2 ulp; ±1 of ±∞, NaN of NaN.
 #[inline]
 pub fn erf<R: Real>(x: R) -> R {
+    let [value] = R::named(
+        "erf",
+        [x],
+        #[inline(always)]
+        |[x]| [erf_text(x)],
+    );
+    value
+}
+
+#[inline(always)]
+fn erf_text<R: Real>(x: R) -> R {
     let ax = x.abs();
     let small = ax.mul_add(polynomial(x * x, small_coefficients::<R>()), ax);
     let large = R::ONE - erfc_and_exp(ax).0;
@@ -20,6 +31,17 @@ pub fn erf<R: Real>(x: R) -> R {
 /// erfc x for x ≥ 0, with an error below an ulp of 1 however small it is, and exp(−x²), which costs nothing more.
 #[inline(always)]
 pub(crate) fn erfc_and_exp<R: Real>(x: R) -> (R, R) {
+    let [erfc, e] = R::named(
+        "erfc_and_exp",
+        [x],
+        #[inline(always)]
+        |[x]| erfc_and_exp_text(x).into(),
+    );
+    (erfc, e)
+}
+
+#[inline(always)]
+fn erfc_and_exp_text<R: Real>(x: R) -> (R, R) {
     let e = exp_negative(-(x * x));
     (e * R::lit(core::f64::consts::FRAC_2_SQRT_PI) * scaled_erfc(x), e)
 }
@@ -38,6 +60,17 @@ fn scaled_erfc<R: Real>(x: R) -> R {
 /// The y with erf y = x, for |x| < 1: at most 6 ulp in `f32`, 4 in `f64`.
 #[inline]
 pub fn erf_inv<R: Real>(x: R) -> R {
+    let [value] = R::named(
+        "erf_inv",
+        [x],
+        #[inline(always)]
+        |[x]| [erf_inv_text(x)],
+    );
+    value
+}
+
+#[inline(always)]
+fn erf_inv_text<R: Real>(x: R) -> R {
     x * erf_inv_over(-ln((R::ONE - x) * (R::ONE + x)))
 }
 
@@ -50,6 +83,17 @@ pub(crate) fn erf_inv_within<R: Real>(x: R) -> R {
 /// erf⁻¹(x)/x from w = −ln(1 − x²). Beyond the first piece, which holds all but 0.4 % of \[−1, 1\], only if some lane is there.
 #[inline(always)]
 pub(crate) fn erf_inv_over<R: Real>(w: R) -> R {
+    let [value] = R::named(
+        "erf_inv_over",
+        [w],
+        #[inline(always)]
+        |[w]| [erf_inv_over_text(w)],
+    );
+    value
+}
+
+#[inline(always)]
+fn erf_inv_over_text<R: Real>(w: R) -> R {
     let Some((near, far)) = inverse_pieces::<R>().split_first() else { return R::ZERO };
     let mut ratio = long_polynomial(w - R::lit(near.middle), near.coefficients);
     for piece in far {

@@ -10,6 +10,17 @@ use crate::real::{Precision, Real};
 /// stalls all eight; +∞ beyond the largest; NaN of NaN.
 #[inline(always)]
 pub fn exp<R: Real>(x: R) -> R {
+    let [value] = R::named(
+        "exp",
+        [x],
+        #[inline(always)]
+        |[x]| [exp_text(x)],
+    );
+    value
+}
+
+#[inline(always)]
+fn exp_text<R: Real>(x: R) -> R {
     let (n, r) = reduce(x);
     let [least, largest] = range::<R>();
     // Only what lies between the ends has an exponent; beyond, x is positive, or NaN.
@@ -20,6 +31,17 @@ pub fn exp<R: Real>(x: R) -> R {
 /// [`exp`] of x ≤ 0; 0 of NaN.
 #[inline(always)]
 pub(crate) fn exp_negative<R: Real>(x: R) -> R {
+    let [value] = R::named(
+        "exp_negative",
+        [x],
+        #[inline(always)]
+        |[x]| [exp_negative_text(x)],
+    );
+    value
+}
+
+#[inline(always)]
+fn exp_negative_text<R: Real>(x: R) -> R {
     let (n, r) = reduce(x);
     reduced(n, r).or_zero(x.ge(R::lit(range::<R>()[0])))
 }
@@ -69,6 +91,17 @@ pub fn flushed_square<R: Real>(root: R, factor: R) -> R {
 /// eˣ − 1 without cancellation: at most 2 ulp. −1 far below 0, +∞ beyond the largest number, NaN of NaN.
 #[inline]
 pub fn exp_m1<R: Real>(x: R) -> R {
+    let [value] = R::named(
+        "exp_m1",
+        [x],
+        #[inline(always)]
+        |[x]| [exp_m1_text(x)],
+    );
+    value
+}
+
+#[inline(always)]
+fn exp_m1_text<R: Real>(x: R) -> R {
     let [_, largest] = range::<R>();
     // At −40 even f64 cannot tell the result from −1.
     let (n, r) = reduce(x.max(R::lit(-40.0)));

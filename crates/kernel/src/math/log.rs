@@ -11,6 +11,17 @@ use crate::real::{Precision, Real};
 /// ln x: at most 2 ulp, denormal numbers included. −∞ of 0, NaN below and of NaN, +∞ of +∞.
 #[inline]
 pub fn ln<R: Real>(x: R) -> R {
+    let [value] = R::named(
+        "ln",
+        [x],
+        #[inline(always)]
+        |[x]| [ln_text(x)],
+    );
+    value
+}
+
+#[inline(always)]
+fn ln_text<R: Real>(x: R) -> R {
     let (m, k) = split(x);
     let f = m - R::ONE;
     special(x, ln_of_parts(f, k))
@@ -19,6 +30,17 @@ pub fn ln<R: Real>(x: R) -> R {
 /// [`ln`] of a positive, normal, finite x.
 #[inline(always)]
 pub(crate) fn ln_normal<R: Real>(x: R) -> R {
+    let [value] = R::named(
+        "ln_normal",
+        [x],
+        #[inline(always)]
+        |[x]| [ln_normal_text(x)],
+    );
+    value
+}
+
+#[inline(always)]
+fn ln_normal_text<R: Real>(x: R) -> R {
     let (m, k) = x.split_exponent();
     ln_of_parts(m - R::ONE, k)
 }
@@ -26,6 +48,17 @@ pub(crate) fn ln_normal<R: Real>(x: R) -> R {
 /// ln(1 + x) without cancellation: at most 2 ulp. −∞ of −1, NaN below and of NaN, +∞ of +∞.
 #[inline]
 pub fn ln_1p<R: Real>(x: R) -> R {
+    let [value] = R::named(
+        "ln_1p",
+        [x],
+        #[inline(always)]
+        |[x]| [ln_1p_text(x)],
+    );
+    value
+}
+
+#[inline(always)]
+fn ln_1p_text<R: Real>(x: R) -> R {
     let u = R::ONE + x;
     let (m, k) = u.split_exponent();
     // What u was rounded by, scaled as m is; where nothing was scaled, f is x itself.
@@ -41,6 +74,17 @@ pub fn ln_1p<R: Real>(x: R) -> R {
 /// normal number, as [`exp`](super::exp) is. NaN below 0.
 #[inline]
 pub fn pow<R: Real>(x: R, y: R) -> R {
+    let [value] = R::named(
+        "pow",
+        [x, y],
+        #[inline(always)]
+        |[x, y]| [pow_text(x, y)],
+    );
+    value
+}
+
+#[inline(always)]
+fn pow_text<R: Real>(x: R, y: R) -> R {
     let (high, low) = ln_of_two_words(x);
     // y(high + low) again in two words.
     let p = y * high;

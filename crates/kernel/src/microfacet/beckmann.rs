@@ -58,6 +58,18 @@ impl<R: Real> Beckmann<R> {
     /// D of the half vector h = wo + wi with h.z ≥ 0, not normalised, with |h|² given \[1/sr\].
     #[inline]
     pub fn d(&self, h: Vec3<R>, h_length2: R) -> R {
+        let args = [self.alpha_x, self.alpha_y, h.x, h.y, h.z, h_length2];
+        let [d] = R::named(
+            "beckmann_d",
+            args,
+            #[inline(always)]
+            |[alpha_x, alpha_y, x, y, z, h_length2]| [Self { alpha_x, alpha_y }.d_text(Vec3::new(x, y, z), h_length2)],
+        );
+        d
+    }
+
+    #[inline(always)]
+    fn d_text(&self, h: Vec3<R>, h_length2: R) -> R {
         let (h, h_length2) = lengthened(h, h_length2);
         // Where h lies that close to the horizon, D is 0 by 1e20 in the exponent; and all quotients stay finite.
         let z = h.z.max(R::lit(1e-16));
@@ -71,9 +83,18 @@ impl<R: Real> Beckmann<R> {
     /// s(w) = |w_z|(1 + 2Λ(w)): |w_z| seen from above, t/√π in the horizon.
     #[inline(always)]
     pub fn smith_length(&self, w: Vec3<R>) -> R {
-        let tilt = self.tilt(w);
-        let (erfc, e) = erfc_and_exp(tilt.cot);
-        w.z.abs().mul_add(R::ONE - erfc, tilt.length * e * R::lit(0.5 * FRAC_2_SQRT_PI))
+        let args = [self.alpha_x, self.alpha_y, w.x, w.y, w.z];
+        let [s] = R::named(
+            "beckmann_smith_length",
+            args,
+            #[inline(always)]
+            |[alpha_x, alpha_y, x, y, z]| {
+                let tilt = Self { alpha_x, alpha_y }.tilt(Vec3::new(x, y, z));
+                let (erfc, e) = erfc_and_exp(tilt.cot);
+                [z.abs().mul_add(R::ONE - erfc, tilt.length * e * R::lit(0.5 * FRAC_2_SQRT_PI))]
+            },
+        );
+        s
     }
 
     /// A microfacet normal of any length, distributed as those visible from wo (above the surface).
@@ -116,6 +137,21 @@ struct Tilt<R> {
 /// of density (a − x)₊ exp(−x² − y²).
 #[inline(always)]
 fn visible_slopes<R: Real>(cot: R, u: [R; 2]) -> (R, R) {
+    let args = [cot, u[0], u[1]];
+    let [along, across] = R::named(
+        "beckmann_visible_slopes",
+        args,
+        #[inline(always)]
+        |[cot, u0, u1]| {
+            let (along, across) = visible_slopes_text(cot, [u0, u1]);
+            [along, across]
+        },
+    );
+    (along, across)
+}
+
+#[inline(always)]
+fn visible_slopes_text<R: Real>(cot: R, u: [R; 2]) -> (R, R) {
     let (erfc, e) = erfc_and_exp(cot);
     let erf = R::ONE - erfc;
     // The weights of the three parts, over √π/2.

@@ -46,6 +46,18 @@ impl<R: Real> Ggx<R> {
     /// D of the normal along h (any length, h.z ≥ 0), with |h|² given \[1/sr\].
     #[inline(always)]
     pub fn d(&self, h: Vec3<R>, h_length2: R) -> R {
+        let args = [self.alpha_x, self.alpha_y, h.x, h.y, h.z, h_length2];
+        let [d] = R::named(
+            "ggx_d",
+            args,
+            #[inline(always)]
+            |[alpha_x, alpha_y, x, y, z, h_length2]| [Self { alpha_x, alpha_y }.d_text(Vec3::new(x, y, z), h_length2)],
+        );
+        d
+    }
+
+    #[inline(always)]
+    fn d_text(&self, h: Vec3<R>, h_length2: R) -> R {
         let (h, _) = lengthened(h, h_length2);
         // With a = α_x α_y: D = a³|h|⁴/(π (α_y²h_x² + α_x²h_y² + a²h_z²)²), one division instead of four. One factor α is
         // lifted by about 1/α_min, so that the squares of the least widths do not underflow; a power of two rounds nothing.
@@ -63,9 +75,17 @@ impl<R: Real> Ggx<R> {
     /// s(w) = √(w_z² + α_x²w_x² + α_y²w_y²): the length of w in the space where the surface is a hemisphere.
     #[inline(always)]
     pub fn smith_length(&self, w: Vec3<R>) -> R {
-        let x = self.alpha_x * w.x;
-        let y = self.alpha_y * w.y;
-        x.mul_add(x, y.mul_add(y, w.z * w.z)).sqrt()
+        let args = [self.alpha_x, self.alpha_y, w.x, w.y, w.z];
+        let [s] = R::named(
+            "ggx_smith_length",
+            args,
+            #[inline(always)]
+            |[alpha_x, alpha_y, x, y, z]| {
+                let (x, y) = (alpha_x * x, alpha_y * y);
+                [x.mul_add(x, y.mul_add(y, z * z)).sqrt()]
+            },
+        );
+        s
     }
 
     /// How much of the lower cap can reflect above the horizon, in [0, 1]: Eto & Tokuyoshi's
