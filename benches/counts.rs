@@ -114,7 +114,7 @@ fn counted_by_the_gate(work: &mut dyn FnMut()) {
 }
 
 macro_rules! lobe_rows {
-    ($($lobe:ident),* $(,)?) => {
+    ($($file:ident::$lobe:ident),* $(,)?) => {
         /// Value and density, value alone, and sampling of every lobe: 4096 directions.
         fn kernel(rows: &mut Rows) {
             let (one, eight) = (Scalars::new(), Lanes::new());

@@ -41,7 +41,7 @@ fn main() -> ExitCode {
 }
 
 macro_rules! lobe_rows {
-    ($($lobe:ident),* $(,)?) => {
+    ($($file:ident::$lobe:ident),* $(,)?) => {
         fn rows(criterion: &mut Criterion) {
             let (one, eight) = (Scalars::new(), Lanes::new());
             $(

@@ -6,10 +6,10 @@
 //! compiler made for one kind of material.
 
 use crate::lobes::{BATCH, Lanes};
+use gonio_kernel::closure::Unguarded;
 use gonio_kernel::fresnel::Fresnel;
 use gonio_kernel::lobe::{Conductor, Lambert, RoughDielectric};
 use gonio_kernel::microfacet::{Beckmann, Ggx};
-use gonio_kernel::closure::Unguarded;
 use gonio_kernel::{F32x8, Lobe, Real, Rgb, Transport, Vec3};
 use std::hint::black_box;
 use std::io::{BufRead, Write};

@@ -72,7 +72,11 @@ fn key(entry: &Entry) -> Option<String> {
 fn tables() -> String {
     let mut text = String::new();
     let mut table = |name: &str, doc: &str, entries: &[Entry]| {
-        let _ = write!(text, "\n### `\"{name}\"`\n\n{}\n\n| key | meaning | range | default |\n|---|---|---|---|\n", sentence(doc));
+        let _ = write!(
+            text,
+            "\n### `\"{name}\"`\n\n{}\n\n| key | meaning | range | default |\n|---|---|---|---|\n",
+            sentence(doc)
+        );
         rows(entries, None, &mut text);
     };
     AnyLobe::<f32>::each_model(&mut |info| table(info.name, info.doc, info.entries));

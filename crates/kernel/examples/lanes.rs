@@ -27,10 +27,8 @@ fn main() {
     }
 
     // Lane i has the bits of the scalar.
-    let one = Conductor::new(
-        Beckmann::isotropic(alpha.lane(3)),
-        Fresnel::Schlick { f0: Rgb::new(0.95_f32, 0.93, 0.88) },
-    );
+    let one =
+        Conductor::new(Beckmann::isotropic(alpha.lane(3)), Fresnel::Schlick { f0: Rgb::new(0.95_f32, 0.93, 0.88) });
     let alone = Closure::new(one, Vec3::new(0.6_f32, 0.0, 0.8)).sample([0.5, 0.25, 0.75]);
     assert_eq!(alone.wi.x.to_bits(), sample.wi.x.lane(3).to_bits());
 }

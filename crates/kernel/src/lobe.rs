@@ -50,6 +50,25 @@
 //! assert!(sample.weight.g <= 1.0);
 //! ```
 
+/// The table of models, in the order in which a name is looked for: calls `$macro!` with the file and the name of each. The enum
+/// [`AnyLobe`], the proof that the kernel cannot panic, the keys of material files, the catalog of the instruments and the
+/// benchmarks are made from it.
+#[macro_export]
+macro_rules! for_each_lobe {
+    ($macro:ident) => {
+        $macro! {
+            lambert::Lambert,
+            mirror::Mirror,
+            conductor::Conductor,
+            smooth_conductor::SmoothConductor,
+            rough_dielectric::RoughDielectric,
+            dielectric::Dielectric,
+            phong::Phong,
+            eon::Eon,
+        }
+    };
+}
+
 mod any;
 mod coating;
 mod conductor;
@@ -65,18 +84,17 @@ mod smooth_conductor;
 mod two_sided;
 mod weighted;
 
+macro_rules! exported {
+    ($($file:ident::$model:ident),* $(,)?) => { $(pub use $file::$model;)* };
+}
+for_each_lobe!(exported);
+
 pub use any::AnyLobe;
 pub use coating::Coating;
-pub use conductor::Conductor;
-pub use dielectric::Dielectric;
-pub use eon::{Eon, EonAlbedo};
-pub use lambert::Lambert;
+pub use eon::EonAlbedo;
 pub use layer::{Coat, Layer, Layering, NoCoat};
-pub use mirror::Mirror;
 pub use mix::Mix;
-pub use phong::{Phong, PhongNormalization};
-pub use rough_dielectric::RoughDielectric;
-pub use smooth_conductor::SmoothConductor;
+pub use phong::PhongNormalization;
 pub use two_sided::TwoSided;
 pub use weighted::Weighted;
 

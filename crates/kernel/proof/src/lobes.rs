@@ -50,7 +50,7 @@ type Weighted<R> = lobe::Weighted<R, Eon<R>>;
 type Layer<R> = lobe::Layer<R, Conductor<R>, Lambert<R>>;
 
 macro_rules! prove_lobes {
-    ($($lobe:ident),* $(,)?) => {
+    ($($file:ident::$lobe:ident),* $(,)?) => {
         #[inline(always)]
         pub(crate) fn prove() {
             $( prove_lobe!($lobe, f32); prove_lobe!($lobe, f64); prove_lobe!($lobe, F32x8); )*

@@ -1,24 +1,6 @@
 //! `AnyLobe`: one of the kernel's lobes, and the macro that makes such enums, a user's too.
 
-use super::{Conductor, Dielectric, Eon, Lambert, Mirror, Phong, RoughDielectric, SmoothConductor};
-
-/// The table of models: calls `$macro!` with the name of every model. The enum [`AnyLobe`], the proof that the kernel cannot panic,
-/// the keys of material files and the rows of the validation are made from it.
-#[macro_export]
-macro_rules! for_each_lobe {
-    ($macro:ident) => {
-        $macro! {
-            Lambert,
-            Mirror,
-            Conductor,
-            SmoothConductor,
-            RoughDielectric,
-            Dielectric,
-            Phong,
-            Eon,
-        }
-    };
-}
+use super::*;
 
 /// An enum of lobes that is a lobe: the kernel's own, and a user's, which may hold the kernel's.
 ///
@@ -257,7 +239,7 @@ macro_rules! __never {
 }
 
 macro_rules! kernel_lobes {
-    ($($model:ident),* $(,)?) => {
+    ($($file:ident::$model:ident),* $(,)?) => {
         any_lobe! {
             /// Any of the kernel's lobes. The lifetime is that of tables that a lobe borrows.
             pub enum AnyLobe<'t, R> {$(
@@ -268,3 +250,98 @@ macro_rules! kernel_lobes {
     };
 }
 for_each_lobe!(kernel_lobes);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closure::Closure;
+    use crate::fresnel::Fresnel;
+    use crate::metal::Metal;
+    use crate::microfacet::{Beckmann, Ggx};
+    use crate::model::Parameters;
+    use crate::real::Real;
+    use crate::rgb::Rgb;
+    use crate::surface::{Surface, SurfaceError};
+    use crate::testing::{MixedLanes, Random, same_bits, special_values};
+    use crate::vec3::Vec3;
+    use std::format;
+    use std::vec::Vec;
+
+    type Mixed = MixedLanes<f32>;
+
+    /// wo, wi, u: ordinary, and one in four with a special value in it.
+    fn inputs() -> Vec<[[f32; 3]; 3]> {
+        let (values, mut random) = (special_values(), Random(71));
+        let mut all = Vec::new();
+        for i in 0..2000 {
+            let [wo, wi] = [random.direction(), random.direction()].map(<[f32; 3]>::from);
+            let mut input = [wo, wi, [random.unit(), random.unit(), random.unit()]];
+            if i % 4 == 0 {
+                let at = random.bits() as usize;
+                input[at % 3][at / 3 % 3] = values[at / 9 % values.len()];
+            }
+            all.push(input);
+        }
+        all
+    }
+
+    /// Value and sample of a closure, as numbers.
+    fn numbers<R: Real, L: Lobe<R>>(lobe: &L, [wo, wi, u]: [[R; 3]; 3], of: impl Fn(R) -> f32) -> [f32; 16] {
+        let closure = Closure::new(lobe, Vec3::from(wo));
+        let (value, sample) = (closure.eval(wi.into()), closure.sample(u));
+        let truth = |mask: R::Mask| R::select(mask, R::ONE, R::ZERO);
+        let (f, s, w) = (value.f_cos, sample.f_cos, sample.weight);
+        let event = [truth(sample.event.failed), truth(sample.event.is_delta), truth(sample.event.transmitted)];
+        let [x, y, z] = sample.wi.into();
+        [f.r, f.g, f.b, value.pdf, s.r, s.g, sample.pdf, x, y, z, w.r, w.g, w.b, event[0], event[1], event[2]].map(of)
+    }
+
+    fn assert_same<L: Lobe<f32> + Parameters<Real = f32>>(what: &str, lobe: L)
+    where
+        L::Of<Mixed>: Lobe<Mixed>,
+    {
+        let mixed = lobe.to::<Mixed>();
+        for input in inputs() {
+            let alone = numbers(&lobe, input, |x| x);
+            let among = numbers(&mixed, input.map(|v| v.map(MixedLanes)), |x| x.0);
+            let same = alone.iter().zip(&among).all(|(&a, &b)| same_bits(a, b));
+            assert!(same, "{what} at {input:?}: {alone:?} alone, {among:?} among lanes that differ");
+        }
+    }
+
+    /// Every model at usual values, and what they do not show.
+    fn lobes() -> Vec<AnyLobe<'static, f32>> {
+        let mut lobes = Vec::new();
+        macro_rules! typical {
+            ($($file:ident::$model:ident),* $(,)?) => { $(lobes.extend($model::<f32>::typical().map(AnyLobe::from));)* };
+        }
+        for_each_lobe!(typical);
+        let gold = Fresnel::from(Metal::Gold);
+        lobes.push(Conductor::new(Beckmann::isotropic(0.3), gold).into());
+        lobes.push(Conductor::new(Ggx::isotropic(1e-8), Fresnel::Schlick { f0: Rgb::splat(0.5) }).into());
+        lobes.push(Dielectric::new(1.0 / 1.5).into());
+        lobes.push(RoughDielectric::new(Ggx::isotropic(0.2), 1.0002).into());
+        lobes
+    }
+
+    #[test]
+    fn no_branch_on_what_other_lanes_do_changes_a_lobe_or_a_closure() -> Result<(), SurfaceError> {
+        let all = lobes();
+        for lobe in &all {
+            assert_same(&format!("{lobe:?}"), *lobe);
+        }
+        let mut many = Surface::<f32, AnyLobe<f32>, 12, 3>::empty();
+        many = many.coat(0.9, Coating::new(1.5, 0.1).lobe(), Layering::Reciprocal)?;
+        many = many.coat(0.5, Mirror::new(Rgb::splat(0.2)), Layering::FurnacePreserving)?;
+        for lobe in all.iter().take(10) {
+            many = many.with(0.1, *lobe)?;
+        }
+        assert_same("twelve lobes", many);
+        let coat = Conductor::new(Ggx::isotropic(0.2), Fresnel::Dielectric { eta: 1.5 });
+        let layer =
+            Layer::new(coat, Lambert::new(Rgb::splat(0.7)), Layering::Reciprocal).map_err(|_| SurfaceError::NoCoat)?;
+        assert_same("a layer", layer);
+        assert_same("a mix", layer.plus(Mirror::new(Rgb::splat(0.1))));
+        Ok(())
+    }
+}

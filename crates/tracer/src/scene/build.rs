@@ -12,7 +12,8 @@ use super::mtl::Library;
 use super::obj::{self, ObjFile};
 use super::textures::Textures;
 use super::{
-    Camera, Environment, FilmSettings, Instance, IntegratorSettings, Loading, LobeSpec, Material, Mesh, Scene, SceneError, Stage, paths,
+    Camera, Environment, FilmSettings, Instance, IntegratorSettings, Loading, LobeSpec, Material, Mesh, Scene,
+    SceneError, Stage, paths,
 };
 
 /// Largest number of materials: an index fits sixteen bits.

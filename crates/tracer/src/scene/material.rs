@@ -51,7 +51,11 @@ pub(super) fn read(name: &str, table: &Table<'_>, context: &mut Context<'_>) -> 
     let normal_map = normal_map(table, context.textures.as_deref_mut())?;
     let lobes = lobes(table, context)?;
     if lobes.len() > MOST_LOBES {
-        return Err(table.error(format!("{} has {} lobes; at most {MOST_LOBES} are possible", table.name(), lobes.len())));
+        return Err(table.error(format!(
+            "{} has {} lobes; at most {MOST_LOBES} are possible",
+            table.name(),
+            lobes.len()
+        )));
     }
     let coats = lobes.iter().filter(|lobe| lobe.coat.is_some()).count();
     if coats > MOST_COATS {

@@ -181,7 +181,10 @@ fn what_a_type_cannot_be_is_refused_with_what_it_can() {
             "\"compensation\" needs the distribution \"ggx\"",
         ),
         ("type = \"dielectric\"\nior = 0", "ior"),
-        ("type = \"phong\"\ndiffuse = 0.6\nglossy = 0.6", "\"diffuse\" and \"glossy\" together reflect more than all light"),
+        (
+            "type = \"phong\"\ndiffuse = 0.6\nglossy = 0.6",
+            "\"diffuse\" and \"glossy\" together reflect more than all light",
+        ),
         ("type = \"eon\"\nroughness = 1.5", "roughness"),
     ] {
         let message = refused(text);
