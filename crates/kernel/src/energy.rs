@@ -2,11 +2,11 @@
 //!
 //! A microfacet model that follows light to the first facet only loses what meets a second one: at $\alpha = 1$ up to 69 % of
 //! it. What is missing is known. Let $E(\mu)$ be the directional albedo of the isotropic GGX reflector with $F = 1$ and Smith's
-//! height-correlated masking, $f = D G_2/(4\mu_o\mu_i)$, and $E_{avg} = 2\int_0^1 E(\mu)\,\mu\,d\mu$ its cosine mean.
+//! height-correlated masking, $f = D G_2/(4\mu_o\mu_i)$, and $E_{avg} = 2\int_0^1 E(\mu)\\,\mu\\,d\mu$ its cosine mean.
 //!
 //! - [`kulla_conty`] adds a lobe, wide and reciprocal, which holds exactly what is missing
 //!   (Kulla & Conty 2017, "Revisiting Physically Based Shading at Imageworks", after Kelemen & Szirmay-Kalos 2001):
-//!   $$f_{ms} = F_{ms}\,\frac{(1 - E(\mu_o))(1 - E(\mu_i))}{\pi(1 - E_{avg})}.$$
+//!   $$f_{ms} = F_{ms}\\,\frac{(1 - E(\mu_o))(1 - E(\mu_i))}{\pi(1 - E_{avg})}.$$
 //!   Light that is scattered more than once is coloured more than once: [`multiple_fresnel`], by facets met at
 //!   [`facet_cosines`]. Against the random walk (the instrument `walk`) the total of metals is right to 2 %.
 //! - [`turquin`] scales the single scattering up (Turquin 2019, "Practical multiple scattering compensation for microfacet
@@ -14,11 +14,11 @@
 //!
 //! **How $1 - E$ is computed.** No grid: lanes cannot gather, and interpolation would be coarse where it matters. A factor
 //! holds the boundary layer at grazing, whose width is α, and the growth with α,
-//! $$1 - E = \frac{4\mu\alpha^2(1 + 12\alpha^2)}{(\mu + \alpha)(\mu + 4\alpha)^2}\,P(v, w), \qquad
+//! $$1 - E = \frac{4\mu\alpha^2(1 + 12\alpha^2)}{(\mu + \alpha)(\mu + 4\alpha)^2}\\,P(v, w), \qquad
 //!   v^4 = \frac{\mu(1 + 12\alpha)}{\mu + 12\alpha}, \quad w = \frac{5\alpha}{1 + 4\alpha},$$
 //! and leaves a P between 0.16 and 5.2, whose logarithm a tensor of Chebyshev polynomials follows on the unit square, to which
 //! v and w stretch all that there is of μ and α. Because 1 − E is what is approximated, it is positive however small it is. Its mean is
-//! $1 - E_{avg} = \alpha^2 \ln(1 + 0.218/\alpha)\,Q(\sqrt\alpha)$, the logarithm being that of GGX's long tail.
+//! $1 - E_{avg} = \alpha^2 \ln(1 + 0.218/\alpha)\\,Q(\sqrt\alpha)$, the logarithm being that of GGX's long tail.
 //!
 //! In `f32` a logarithm's absolute error is the result's relative one, so the polynomials are summed from the nearer end of
 //! their interval, and what is small there, 1 − v or 1 − w, is computed and not left over: 1 − E is right to 6 units of the

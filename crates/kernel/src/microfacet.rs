@@ -2,7 +2,7 @@
 //!
 //! A distribution has a density of normals D(m) and Smith's masking (Smith 1967; Heitz 2014). Its Λ enters as the length
 //!
-//! $$ s(w) = |\cos\theta|\,(1 + 2\Lambda(w)) $$
+//! $$ s(w) = |\cos\theta|\\,(1 + 2\Lambda(w)) $$
 //!
 //! which needs no division by a grazing cosine. (|cosθ| + s)/2 is the area of the microsurface that w sees, per area of the
 //! surface. With c = |cosθ|:
@@ -10,7 +10,7 @@
 //! - masking $G_1 = 2c/(c + s)$,
 //! - height-correlated $G_2/(4 c_o c_i) = 1/(2(c_i s_o + c_o s_i))$,
 //! - separable $G_1 G_1/(4 c_o c_i) = 1/((c_o + s_o)(c_i + s_i))$,
-//! - visible normals $D_o(m) = G_1(o)\,D(m)\,|o·m|/c_o = 2 D(m)\,|o·m|/(c_o + s_o)$.
+//! - visible normals $D_o(m) = G_1(o)\\,D(m)\\,|o·m|/c_o = 2 D(m)\\,|o·m|/(c_o + s_o)$.
 
 mod beckmann;
 mod ggx;

@@ -1,6 +1,7 @@
 //! What the unit tests share: repeatable random numbers, the numbers that break things, and comparisons.
 
 mod builds;
+mod equations;
 mod mixed_lanes;
 pub(crate) mod results;
 

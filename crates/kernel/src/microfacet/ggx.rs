@@ -7,10 +7,10 @@
 //!
 //! With α_x along the tangent and α_y along the bitangent:
 //!
-//! $$ D(m) = \frac{1}{\pi\,\alpha_x \alpha_y\,(m_x^2/\alpha_x^2 + m_y^2/\alpha_y^2 + m_z^2)^2} \qquad
+//! $$ D(m) = \frac{1}{\pi\\,\alpha_x \alpha_y\\,(m_x^2/\alpha_x^2 + m_y^2/\alpha_y^2 + m_z^2)^2} \qquad
 //!    s(w) = \sqrt{w_z^2 + \alpha_x^2 w_x^2 + \alpha_y^2 w_y^2} $$
 //!
-//! with $s(w) = |\cos\theta|\,(1 + 2\Lambda(w))$, from which [`super`] makes masking, shadowing and densities.
+//! with $s(w) = |\cos\theta|\\,(1 + 2\Lambda(w))$, from which [`super`] makes masking, shadowing and densities.
 //!
 //! Nothing is formed by subtraction: D comes from the unnormalised half vector, which stays exact near the mirror
 //! direction. Cost: D one division, s one root, its reach two divisions and a root, a visible normal one root.
