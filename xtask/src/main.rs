@@ -7,6 +7,7 @@ mod bench;
 mod cargo;
 mod ci;
 mod elf;
+mod embed;
 mod embree;
 mod fuzz;
 mod no_std;
@@ -23,6 +24,7 @@ cargo xtask validate [--features LIST] [ARG]...
                                  build as the tests are built, then `gonio validate ARG...` from the root of the
                                  repository; exit code 0 passed, 1 error, 2 wrong usage, 3 a check failed
 cargo xtask embree               get what the feature `embree` needs, if the system does not have it
+cargo xtask embed                build and run programs that use the crates from outside, without this repository's flags
 cargo xtask no-std               prove that the kernel needs no std, no allocator and cannot panic
 cargo xtask peers [--rounds N] [--spp N] [--python PATH]
                                  the Cornell box against Mitsuba 3, in turns; Python with mitsuba is `python3`
@@ -51,6 +53,7 @@ fn main() -> ExitCode {
     let result = match (command.as_str(), rest) {
         ("validate", rest) => validate::run(rest),
         ("embree", []) => embree::run(),
+        ("embed", []) => embed::run(),
         ("no-std", []) => no_std::run(),
         ("peers", rest) => peers::pictures(rest),
         ("bsdfs", rest) => peers::lobes(rest),

@@ -150,7 +150,7 @@ pub enum Techniques {
     /// Both, weighted by the power heuristic.
     #[default]
     Both,
-    /// Lights are asked; scattering finds light only behind discrete events and the camera.
+    /// Lights are asked; scattering finds light only behind delta events and the camera.
     Lights,
     /// Scattering alone.
     Scattering,

@@ -12,7 +12,7 @@ use gonio_kernel::{F32x8, Mask8, Rgb, U32x8, Vec3, each_lane};
 pub(crate) struct Paths {
     /// The product of all weights so far.
     pub(crate) throughput: Rgb<F32x8>,
-    /// Density with which scattering chose this ray; 0 after the camera or a discrete event.
+    /// Density with which scattering chose this ray; 0 after the camera or a delta event.
     pub(crate) pdf: F32x8,
     /// Density with which a light sample would have chosen this direction in a constant environment; a map is asked itself,
     /// when the path has left the world.

@@ -1,7 +1,7 @@
 //! The shading stage: eight paths at a time receive emitted light, ask a light, and scatter.
 //!
 //! Multiple importance sampling: light that can be reached both by scattering and by asking the light is weighted by the
-//! power heuristic on both sides; after the camera or a discrete event only scattering can reach it, with weight 1.
+//! power heuristic on both sides; after the camera or a delta event only scattering can reach it, with weight 1.
 //! Per vertex the order of additions is: emission, then the answer of the shadow ray.
 
 use crate::environment::EnvironmentMap;
