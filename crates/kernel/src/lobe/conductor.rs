@@ -1,6 +1,6 @@
 //! A rough reflector: mirrors of GGX- or Beckmann-distributed normals. A metal, or the reflecting part of a dielectric.
 //!
-//! $$ f = \frac{F(\omega_o \cdot m)\,D(m)\,G_2(\omega_o, \omega_i)}{4\,c_o\,c_i} $$
+//! $$ f = \frac{F(\omega_o \cdot m)\\,D(m)\\,G_2(\omega_o, \omega_i)}{4\\,c_o\\,c_i} $$
 //!
 //! with m the half vector (Cook & Torrance 1982; Walter et al. 2007), masking height-correlated unless told otherwise.
 //! Reciprocal; conserves energy, but loses the light that would be scattered more than once: up to 69 % of it at α = 1.

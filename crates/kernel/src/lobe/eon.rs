@@ -4,8 +4,8 @@
 //! Oren & Nayar 1994 (FON). With roughness r in \[0, 1\], $s = \omega_o\cdot\omega_i - \mu_o\mu_i$ (which is $x_o x_i + y_o y_i$),
 //! $t = \max(\mu_o, \mu_i)$ where $s > 0$ and 1 elsewhere, $A = 1/(1 + c_1 r)$:
 //!
-//! $$f = \frac{\rho}{\pi} A\,(1 + r s/t) + \frac{\rho_{ms}}{\pi}\,\frac{(1 - E_F(\mu_o))(1 - E_F(\mu_i))}{1 - \bar E_F},$$
-//! $$E_F(\mu) = A(1 + r\,G(\mu)/\pi), \quad \bar E_F = A(1 + c_2 r), \quad
+//! $$f = \frac{\rho}{\pi} A\\,(1 + r s/t) + \frac{\rho_{ms}}{\pi}\\,\frac{(1 - E_F(\mu_o))(1 - E_F(\mu_i))}{1 - \bar E_F},$$
+//! $$E_F(\mu) = A(1 + r\\,G(\mu)/\pi), \quad \bar E_F = A(1 + c_2 r), \quad
 //!   \rho_{ms} = \frac{\rho^2 \bar E_F}{1 - \rho(1 - \bar E_F)},$$
 //! $c_1 = 1/2 - 2/(3\pi)$, $c_2 = 2/3 - 28/(15\pi)$. The second term returns what the first loses between facets.
 //!
@@ -15,7 +15,7 @@
 //! saturated as r grows.
 //!
 //! **No cancellation.** $1 - E_F = A r (c_1 - G/\pi)$, and $c_1$ is $G/\pi$ at grazing, so that $1 - E_F$ is formed as a sum of
-//! terms that vanish there: $\pi(c_1 - G/\pi) = (1 - S)(\pi/2 - 2/3) + S\,(\arcsin\mu + S\mu) - \tfrac23 S\mu(1 + S + S^2)/(1 + S)$
+//! terms that vanish there: $\pi(c_1 - G/\pi) = (1 - S)(\pi/2 - 2/3) + S\\,(\arcsin\mu + S\mu) - \tfrac23 S\mu(1 + S + S^2)/(1 + S)$
 //! with $S = \sin\theta$ and $1 - S = \mu^2/(1 + S)$. For $s < 0$, $1 + s = (|t_o + t_i|^2 + \mu_o^2 + \mu_i^2)/2$ of the
 //! tangential parts $t$. $f\mu_i$ holds $\mu_i/t \le 1$, never $1/t$.
 //!

@@ -3,8 +3,8 @@
 //! Walter, Marschner, Li & Torrance 2007, "Microfacet Models for Refraction through Rough Surfaces". With η = η_t/η_i seen
 //! from wo, h = wo + wi for reflection and h = wo + η wi for refraction, m along ±h on the side of the normal:
 //!
-//! $$ f_r = \frac{F\,D\,G_2}{4\,c_o c_i} \qquad
-//!    f_t = \frac{(1 - F)\,D\,G_1 G_1\,|\omega_o\!\cdot\!h|\,|\omega_i\!\cdot\!h|\,\eta^2}{c_o c_i\,|h|^4}
+//! $$ f_r = \frac{F\\,D\\,G_2}{4\\,c_o c_i} \qquad
+//!    f_t = \frac{(1 - F)\\,D\\,G_1 G_1\\,|\omega_o\\!\cdot\\!h|\\,|\omega_i\\!\cdot\\!h|\\,\eta^2}{c_o c_i\\,|h|^4}
 //!    \cdot \frac{1}{\eta^2} $$
 //!
 //! where the last factor is that of radiance. Reflection is masked height-correlated unless told otherwise; for refraction,
