@@ -30,11 +30,11 @@
 //!
 //! **Anisotropy.** For $\alpha_x \ne \alpha_y$ there is no more than an effective width, [`effective_alpha`], and what it leaves.
 
-mod albedo;
+pub mod albedo;
 mod tables;
 
 pub use albedo::AlbedoCurve;
-pub use tables::TABLE;
+pub use tables::{ALBEDO, TABLE};
 
 use crate::math::{exp, exp_m1, ln_1p, sin_cos_turns};
 use crate::real::Real;
@@ -162,7 +162,7 @@ pub fn albedo<R: Real>(cos: R, alpha: R) -> R {
     R::ONE - Missing::of(alpha).at(cos)
 }
 
-/// E_avg: the cosine mean of [`albedo`].
+/// E_avg: the cosine mean of [`albedo()`].
 #[inline(always)]
 pub fn albedo_avg<R: Real>(alpha: R) -> R {
     R::ONE - missing_avg(alpha)

@@ -259,9 +259,9 @@ impl<R: Real> Fresnel<R> {
     }
 
     /// The directional albedo of GGX facets of this material, or of a smooth interface for alpha = 0, as a curve that errs upwards; none
-    /// for a material that nothing shines through, or from its denser side.
+    /// for a material that nothing shines through.
     #[inline(always)]
-    pub fn albedo_curve_at(&self, alpha: R) -> Option<AlbedoCurve<R>> {
+    pub fn albedo_curve(&self, alpha: R) -> Option<AlbedoCurve<R>> {
         match *self {
             Self::Schlick { f0 } => Some(AlbedoCurve::schlick(alpha, f0)),
             Self::Dielectric { eta } => Some(AlbedoCurve::dielectric(alpha, eta)),

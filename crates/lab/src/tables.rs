@@ -1,8 +1,9 @@
-//! Makes `energy/tables.rs` of the kernel: quadrature of white GGX, and a fit of what it loses.
+//! Makes `energy/tables.rs` of the kernel: quadrature of GGX, a fit of what it loses if white, and fits of what it reflects.
 //!
 //! Bit for bit the same on every machine: square roots, plain arithmetic and the kernel's own polynomials in `f64`, no
 //! function of a mathematics library, one thread. [`generate`] returns the file; `gonio tables` writes or compares it.
 
+mod albedo;
 mod fit;
 mod ggx;
 
@@ -22,7 +23,8 @@ pub fn generate() -> String {
          //!\n\
          //! Against quadrature, between the nodes of the fit, for α in [1e-8, 1] and μ in (0, 1]: the largest error of E is\n\
          //! {error:.1e}. The largest relative error of 1 − E_avg against the integral of the approximation is {mean_error:.1e}.\n\n\
-         use super::Table;\n\n\
+         use super::Table;\n\
+         use super::albedo::{{NODES, Node}};\n\n\
          /// The coefficients.\n\
          #[rustfmt::skip]\n\
          pub static TABLE: Table = Table {{\n    missing: [\n"
@@ -36,6 +38,7 @@ pub fn generate() -> String {
         let _ = writeln!(text, "        {},", part.join(", "));
     }
     text.push_str("    ],\n};\n");
+    text.push_str(&albedo::text(&albedo::make()));
     text
 }
 

@@ -45,7 +45,9 @@ crate::model! {
     rule |it| R::Mask::splat(it.compensation == Compensation::None || it.is_ggx_correlated())
         => "\"compensation\" needs the distribution \"ggx\" and the masking \"correlated\"";
     coat |it| if it.is_ggx_correlated() && it.compensation == Compensation::None {
-        it.fresnel.albedo_curve_at(it.alpha())
+        // For anisotropic facets no more than a bound is known: that of the narrower alpha, raised.
+        let [x, y] = it.microfacets.alphas();
+        it.fresnel.albedo_curve(x.min(y)).map(|curve| curve.raised(!it.microfacets.is_isotropic()))
     } else {
         None
     };

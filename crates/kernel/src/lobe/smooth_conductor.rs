@@ -27,7 +27,7 @@ crate::model! {
         /// What it is made of.
         fresnel: Fresnel<R>,
     }
-    coat |it| it.fresnel.albedo_curve_at(R::ZERO);
+    coat |it| it.fresnel.albedo_curve(R::ZERO);
 }
 
 impl<R> SmoothConductor<R> {

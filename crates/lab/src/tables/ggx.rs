@@ -29,6 +29,39 @@ pub(crate) fn missing(mu: f64, alpha: f64) -> f64 {
     2.0 * 2.0 / (mu + s_o) * sum
 }
 
+/// Visits the facets that send light up: the cosine at which they meet it, and the part of the light that they see and reflect
+/// if white (µ in (0, 1], α in [1e-9, 1]); the parts add up to E.
+pub(crate) fn facets(mu: f64, alpha: f64, mut visit: impl FnMut(f64, f64)) {
+    static RULE: OnceLock<Vec<Node>> = OnceLock::new();
+    let rule = RULE.get_or_init(|| double_exponential(24));
+    let a2 = alpha * alpha;
+    let sin = ((1.0 - mu) * (1.0 + mu)).sqrt();
+    let s_o = (mu * mu + a2 * sin * sin).sqrt();
+    for Node { x: tau, weight, .. } in rule {
+        // As in `missing`.
+        let stretch = 1.0 + tau * tau;
+        let lean = sin * 2.0 * tau / stretch;
+        let root = (lean * lean + mu * mu).sqrt();
+        let of_azimuth = weight * 2.0 / stretch * 4.0 / (mu + s_o) / std::f64::consts::TAU;
+        for (lean, r1) in [(lean, (lean + root) / mu), (-lean, mu / (lean + root))] {
+            let end = a2 + r1 * r1;
+            let p1 = r1 * r1 / end;
+            for Node { x, rest, weight } in rule {
+                let p_left = p1 * rest;
+                let one_minus_p = a2 / end + p_left;
+                let r = (a2 * p1 * x / one_minus_p).sqrt();
+                let r_left = p_left * end / one_minus_p / (r1 + r);
+                let cos_i = mu * r_left * (r + 1.0 / r1) / (1.0 + r * r);
+                let lost = a2 * ((1.0 - cos_i) * (1.0 + cos_i)).max(0.0);
+                let s_i = (cos_i * cos_i + lost).sqrt();
+                let shadowed = mu * lost / ((s_i + cos_i) * (cos_i * s_o + mu * s_i));
+                let visible = (lean * r + mu).max(0.0);
+                visit((visible / (1.0 + r * r).sqrt()).min(1.0), of_azimuth * weight * p1 * visible * (1.0 - shadowed));
+            }
+        }
+    }
+}
+
 /// The integral over slopes at one azimuth; lean = sinθ cosφ.
 fn of_azimuth(mu: f64, a2: f64, s_o: f64, lean: f64, r1: f64, rule: &[Node]) -> f64 {
     let end = a2 + r1 * r1;
@@ -85,6 +118,15 @@ fn exp(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_facets_reflect_is_what_is_not_missing() {
+        for (mu, alpha) in [(1.0, 1.0), (0.3, 0.5), (0.02, 0.0025), (1e-4, 0.01)] {
+            let mut sum = 0.0;
+            facets(mu, alpha, |_, weight| sum += weight);
+            assert!((1.0 - missing(mu, alpha) - sum).abs() < 1e-7, "{mu} {alpha}: {sum}");
+        }
+    }
 
     #[test]
     fn a_surface_of_width_one_seen_along_its_normal_loses_the_logarithm_of_two() {

@@ -14,7 +14,7 @@ model! {
         /// What it returns of grazing light.
         color: Rgb<R> = 0.6 in REFLECTANCE,
     }
-    coat |dust| Some(AlbedoCurve::from_fn(|cos| dust.color * (R::ONE - cos)));
+    coat |dust| Some(AlbedoCurve::from_fn(|cos| R::ONE - cos).scaled(dust.color));
 }
 
 impl<R: Real> Lobe<R> for Dust<R> {
