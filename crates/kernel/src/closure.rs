@@ -139,6 +139,15 @@ mod tests {
     use crate::surface::{Surface, SurfaceError};
     use crate::testing::{Bare, Random, close, special_values};
 
+    // Out of line, so that each surface's code is made once.
+    #[inline(never)]
+    fn eval<L: Lobe<f32>>(lobe: &L, wo: Vec3<f32>, wi: Vec3<f32>) -> Value<f32> {
+        Closure::new(lobe, wo).eval(wi)
+    }
+    #[inline(never)]
+    fn sample<L: Lobe<f32>>(lobe: &L, wo: Vec3<f32>, u: [f32; 3]) -> BsdfSample<f32> {
+        Closure::new(lobe, wo).sample(u)
+    }
     fn matte() -> Lambert<f32> {
         Lambert::new(Rgb::new(0.4, 0.2, 0.1))
     }
@@ -156,7 +165,7 @@ mod tests {
         let surface = Surface::black().with(0.5, matte())?.with(0.25, mirror())?.with(0.75, metal())?;
         for _ in 0..1000 {
             let (wo, wi) = (random.above(), random.above());
-            let value = Closure::new(&surface, wo).eval(wi);
+            let value = eval(&surface, wo, wi);
             let (a, b) = (matte().value(wo, wi), metal().value(wo, wi));
             let shares = [
                 0.5 * matte().albedo_estimate(wo).luminance(),
@@ -184,14 +193,14 @@ mod tests {
             let (wo, wi) = (random.above(), random.above());
             let u = [random.unit(), random.unit(), random.unit()];
             let values = [
-                Closure::new(&typed, wo).eval(wi),
-                Closure::new(&flat, wo).eval(wi),
-                Closure::new(&nested, wo).eval(wi),
+                eval(&typed, wo, wi),
+                eval(&flat, wo, wi),
+                eval(&nested, wo, wi),
             ];
             let samples = [
-                Closure::new(&typed, wo).sample(u),
-                Closure::new(&flat, wo).sample(u),
-                Closure::new(&nested, wo).sample(u),
+                sample(&typed, wo, u),
+                sample(&flat, wo, u),
+                sample(&nested, wo, u),
             ];
             for i in 1..3 {
                 assert!(close((values[i].pdf / values[0].pdf).into(), 1.0, 1e-5), "{values:?}");
@@ -209,8 +218,7 @@ mod tests {
     fn the_mirror_of_a_mixture_is_chosen_and_weighed_as_a_delta_event() -> Result<(), SurfaceError> {
         let wo = Vec3::new(0.6_f32, 0.0, 0.8);
         let surface = Surface::black().with(0.5, Lambert::new(Rgb::splat(0.5)))?.with(0.5, mirror())?;
-        let closure = Closure::new(&surface, wo);
-        let (first, second) = (closure.sample([0.25, 0.5, 0.5]), closure.sample([0.75, 0.5, 0.5]));
+        let (first, second) = (sample(&surface, wo, [0.25, 0.5, 0.5]), sample(&surface, wo, [0.75, 0.5, 0.5]));
         assert!(!first.event.is_delta && first.event.lobe == 0);
         assert!(second.event.is_delta && second.event.lobe == 1);
         assert_eq!(second.wi, Vec3::new(-0.6, 0.0, 0.8));
@@ -227,17 +235,16 @@ mod tests {
         let black = Surface::black().with(1.0, Mirror::new(Rgb::zero()))?.with(1.0, matte())?;
         for surface in [absent, black] {
             for _ in 0..1000 {
-                let sample = Closure::new(&surface, random.above()).sample([random.unit(), 0.5, 0.5]);
+                let sample = sample(&surface, random.above(), [random.unit(), 0.5, 0.5]);
                 assert!(sample.event.failed || sample.event.lobe == 1);
             }
         }
-        assert!(Closure::new(&Surface::black(), Vec3::<f32>::unit_z()).sample([0.5; 3]).event.failed);
+        assert!(sample(&Surface::black(), Vec3::<f32>::unit_z(), [0.5; 3]).event.failed);
         Ok(())
     }
 
     fn assert_black(surface: &Surface<f32>, wo: Vec3<f32>, wi: Vec3<f32>, u: [f32; 3]) {
-        let closure = Closure::new(surface, wo);
-        let (value, sample) = (closure.eval(wi), closure.sample(u));
+        let (value, sample) = (eval(surface, wo, wi), sample(surface, wo, u));
         let numbers =
             [value.f_cos.r, value.f_cos.g, value.f_cos.b, value.pdf, sample.f_cos.r, sample.pdf, sample.weight.g];
         for x in numbers {
@@ -253,7 +260,7 @@ mod tests {
         for x in special_values() {
             let bad = Vec3::new(x, 0.3, 0.9); // never a unit vector
             assert_black(&surface, bad, up, [0.5; 3]);
-            let value = Closure::new(&surface, up).eval(bad);
+            let value = eval(&surface, up, bad);
             assert_eq!((value.pdf.to_bits(), value.f_cos.g.to_bits()), (0, 0), "{bad:?}");
             if !(0.0..=1.0).contains(&x) {
                 assert_black(&Surface::of(Lambert::new(Rgb::new(0.5, x, 0.5))), up, up, [0.5; 3]);

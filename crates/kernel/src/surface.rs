@@ -171,7 +171,7 @@ impl<R: Real, L: Parameters<Real = R>, const N: usize, const C: usize> Surface<R
     }
 
     /// From other lobes, with the coats of a surface of the same kind.
-    #[inline(always)]
+    #[inline]
     fn like(lobes: [Option<Weighted<R, L>>; N], layerings: [Option<(usize, Layering)>; C]) -> Self {
         let coats = layerings.map(|placed| {
             let (top, layering) = placed?;
@@ -271,7 +271,7 @@ impl<R: Real, L: Lobe<R> + Copy, const N: usize, const C: usize> Surface<R, L, N
         left.map_or(f_cos, |left| f_cos * left)
     }
 
-    #[inline]
+    #[inline(never)]
     fn eval_sum(&self, wo: Vec3<R>, prepared: &Prepared<R, L::Prepared, N, C>, wi: Vec3<R>) -> Value<R> {
         let mut sum = Value::zero();
         for ((index, lobe), &p) in self.lobes().enumerate().zip(&prepared.p) {
@@ -282,7 +282,7 @@ impl<R: Real, L: Lobe<R> + Copy, const N: usize, const C: usize> Surface<R, L, N
         sum
     }
 
-    #[inline]
+    #[inline(never)]
     fn sample_one(&self, wo: Vec3<R>, prepared: &Prepared<R, L::Prepared, N, C>, u: [R; 3]) -> Sample<R> {
         let mut chosen = Sample::nothing();
         let mut below = R::ZERO;
@@ -298,7 +298,7 @@ impl<R: Real, L: Lobe<R> + Copy, const N: usize, const C: usize> Surface<R, L, N
         chosen
     }
 
-    #[inline]
+    #[inline(never)]
     fn delta_one(&self, wo: Vec3<R>, prepared: &Prepared<R, L::Prepared, N, C>, sample: &Sample<R>) -> Value<R> {
         let mut sum = Value::zero();
         let event = sample.event;
@@ -325,7 +325,7 @@ impl<R: Real, L: Lobe<R> + Copy, const N: usize, const C: usize> Lobe<R> for Sur
     type Prepared = Prepared<R, L::Prepared, N, C>;
     const LOBES: u32 = L::LOBES * N as u32;
 
-    #[inline(always)]
+    #[inline]
     fn prepare(&self, wo: Vec3<R>, transport: Transport) -> Self::Prepared {
         let nothing = Prepared { p: [R::ZERO; N], transmitted: [Rgb::zero(); C], only: None, transport };
         match self.only() {
@@ -336,33 +336,33 @@ impl<R: Real, L: Lobe<R> + Copy, const N: usize, const C: usize> Lobe<R> for Sur
             }
         }
     }
-    #[inline(always)]
+    #[inline]
     fn eval(&self, wo: Vec3<R>, prepared: &Self::Prepared, wi: Vec3<R>) -> Value<R> {
         match (&prepared.only, self.only()) {
             (Some(prepared), Some(only)) => only.eval(wo, prepared, wi),
             _ => self.eval_sum(wo, prepared, wi),
         }
     }
-    #[inline(always)]
+    #[inline]
     fn sample(&self, wo: Vec3<R>, prepared: &Self::Prepared, u: [R; 3]) -> Sample<R> {
         match (&prepared.only, self.only()) {
             (Some(prepared), Some(only)) => only.sample(wo, prepared, u),
             _ => self.sample_one(wo, prepared, u),
         }
     }
-    #[inline(always)]
+    #[inline]
     fn delta(&self, wo: Vec3<R>, prepared: &Self::Prepared, sample: &Sample<R>) -> Value<R> {
         match (&prepared.only, self.only()) {
             (Some(prepared), Some(only)) => only.delta(wo, prepared, sample),
             _ => self.delta_one(wo, prepared, sample),
         }
     }
-    #[inline(always)]
+    #[inline]
     fn albedo_estimate(&self, wo: Vec3<R>) -> Rgb<R> {
         let transmitted = self.transmitted(wo);
         self.returned(wo, &transmitted).fold(Rgb::zero(), |sum, one| sum + one)
     }
-    #[inline(always)]
+    #[inline]
     fn domain(&self) -> R::Mask {
         self.lobes().fold(R::Mask::splat(true), |ok, lobe| ok & lobe.domain())
     }
@@ -397,12 +397,10 @@ impl<R: Real, L: Parameters<Real = R>, const N: usize, const C: usize> Parameter
     type Of<S: Real> = Surface<S, L::Of<S>, N, C>;
     const ENTRIES: &'static [Entry] = <Weighted<R, L> as Parameters>::ENTRIES;
 
-    #[inline(always)]
     fn map<S: Real>(&self, f: &mut impl FnMut(&'static Parameter, usize, R) -> S) -> Self::Of<S> {
         Surface::like(self.lobes.map(|lobe| lobe.map(|lobe| lobe.map(f))), self.layerings())
     }
     #[cfg(feature = "wide")]
-    #[inline(always)]
     fn gather(lanes: [&Self::Of<f32>; 8]) -> Self::Of<crate::F32x8> {
         let lobes = core::array::from_fn(|i| {
             let of = |lane: &Self::Of<f32>| lane.lobes.get(i).copied().flatten();

@@ -127,7 +127,7 @@ const TO_POWERS: [[f64; NODES]; NODES] = {
 /// A polynomial in x through values at the nodes, by powers of x.
 ///
 /// In `f32` this goes by way of Chebyshev's coefficients: the products with powers are large, but they are relative to them.
-#[inline(always)]
+#[inline]
 fn interpolate<R: Real>(values: &[R; NODES]) -> [R; NODES] {
     let in_chebyshev = FROM_NODES.each_ref().map(|row| dot(row, values));
     TO_POWERS.each_ref().map(|row| dot(row, &in_chebyshev))
@@ -207,7 +207,7 @@ pub struct AlbedoCurve<R> {
 
 impl<R: Real> AlbedoCurve<R> {
     /// (1 − t) a + t b, with (1 − µ)⁵ of either.
-    #[inline(always)]
+    #[inline]
     fn affine(grid: &Grid<R>, a: &[R; NODES], b: &[R; NODES], t: Rgb<R>, grazing: [R; 2]) -> Self {
         let mut rest = a.iter();
         let extra = b.map(|b| b - rest.next().copied().unwrap_or(R::ZERO));
@@ -257,7 +257,7 @@ impl<R: Real> AlbedoCurve<R> {
 
     /// Where `mask`, no more than an upper bound: E times 1.1, at most 1, with an average of which T(wo) T(wi)/T_avg never returns
     /// too much. For what the curve does not describe: see **Anisotropy** above.
-    #[inline(always)]
+    #[inline(never)]
     #[must_use]
     pub fn raised(self, mask: R::Mask) -> Self {
         if !mask.any() {
@@ -306,7 +306,7 @@ impl<R: Real> AlbedoCurve<R> {
     ///
     /// Where E with its margin exceeded 1, [`Self::at`] returns 1, and the average of what it returns is less than that of the
     /// polynomial: T = 1 − E_avg is raised to T + d²/(d + T) with d = 1.2e-3, the margin. That is 2e-6 where half is reflected.
-    #[inline(always)]
+    #[inline(never)]
     pub fn avg(&self) -> Rgb<R> {
         let margin = R::lit(1.2e-3);
         let avg = (self.avg * self.scale).map(|e| e.min(R::ONE));
@@ -315,7 +315,7 @@ impl<R: Real> AlbedoCurve<R> {
 
     /// An upper bound of 1 − E over all cosines, for a base that is not Lambertian: at most 7e-3 above (where
     /// a narrow lobe has a valley at grazing). Costs 25 values of the curve.
-    #[inline(always)]
+    #[inline(never)]
     pub fn most_transmitted(&self) -> Rgb<R> {
         let mut least = Rgb::splat(R::ONE);
         // Evenly in the angle θ of x = cosθ, and symmetric at both ends. In a valley between two samples the curve is lower than

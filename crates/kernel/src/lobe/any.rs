@@ -285,7 +285,8 @@ mod tests {
         all
     }
 
-    /// Value and sample of a closure, as numbers.
+    /// Value and sample of a closure, as numbers. Out of line, so that its code is made once.
+    #[inline(never)]
     fn numbers<R: Real, L: Lobe<R>>(lobe: &L, [wo, wi, u]: [[R; 3]; 3], of: impl Fn(R) -> f32) -> [f32; 16] {
         let closure = Closure::new(lobe, Vec3::from(wo));
         let (value, sample) = (closure.eval(wi.into()), closure.sample(u));

@@ -60,7 +60,7 @@ pub struct Coat<R> {
 
 impl<R: Real> Coat<R> {
     /// A top of this albedo.
-    #[inline(always)]
+    #[inline(never)]
     pub fn new(albedo: AlbedoCurve<R>, layering: Layering) -> Self {
         let inverse = |t: R| t.recip().or_zero(t.gt(R::ZERO));
         let mean = albedo.avg().map(|e| inverse(R::ONE - e));

@@ -85,7 +85,7 @@ impl<R: Real> AlbedoCurve<R> {
     /// between 0 and 0.0025, whose boundary layer the curve does not show. For η in \[1.02, 1.1\] it reaches 5e-3. Nearer to 1 it
     /// is an upper bound that goes to 0, but slowly at grazing: 0.1 too much for 1.01, 0.26 for 1.003, 0.45 for 1.0005 (α = 0,
     /// µ = 0.02). 1 itself reflects nothing.
-    #[inline(always)]
+    #[inline(never)]
     pub fn dielectric(alpha: R, eta: R) -> Self {
         let of = OfAlpha::new(alpha);
         let matched = eta.same(R::ONE);
@@ -128,7 +128,7 @@ impl<R: Real> AlbedoCurve<R> {
     /// E_fit − E_true lies in \[0, 8.1e-4\] for α ≥ 0.09, \[0, 2.5e-3\] for α in {0} and \[0.0025, 0.09\] and cosines
     /// from 0.02 on; below, as with dielectrics. From f0 = 0.99 on the margin is a good part of 1 − E_avg, and what
     /// T(wo) T(wi)/T_avg leaves of a base is darker than that: all of T is lost for f0 = 1.
-    #[inline(always)]
+    #[inline(never)]
     pub fn schlick(alpha: R, f0: Rgb<R>) -> Self {
         let of = OfAlpha::new(alpha);
         let white = ALBEDO.each_ref().map(|node| of.white(node, of.grid.stretch.cos(R::lit(node.x))));
