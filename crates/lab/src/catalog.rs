@@ -127,16 +127,39 @@ pub(crate) fn random_value(p: &Parameter, random: &mut Random) -> f32 {
     (x as f32).clamp(lo as f32, hi as f32)
 }
 
-/// Values of all numbers of a lobe, at random in its domain: drawn again where a rule over several is broken, its own if that does not
-/// help.
-pub(crate) fn random_values(bsdf: &dyn DynBsdf, numbers: &[Number], random: &mut Random) -> Vec<f32> {
-    for _ in 0..64 {
-        let values: Vec<f32> = numbers.iter().map(|number| random_value(number.parameter, random)).collect();
-        if bsdf.domain_at(&values) {
-            return values;
-        }
+/// Draws values of all numbers of a lobe in its domain.
+pub(crate) struct RandomValues<'a, 't> {
+    bsdf: &'a dyn DynBsdf<'t>,
+    numbers: Vec<Number>,
+    /// A rule over several numbers may be broken where each lies in its own domain.
+    has_rule: bool,
+}
+
+impl<'a, 't> RandomValues<'a, 't> {
+    /// Of this lobe.
+    pub(crate) fn new(bsdf: &'a dyn DynBsdf<'t>) -> Self {
+        let numbers = bsdf.numbers();
+        let mut random = Random::new(0);
+        let mut all = || numbers.iter().map(|number| random_value(number.parameter, &mut random)).collect::<Vec<_>>();
+        let has_rule = (0..256).any(|_| !bsdf.domain_at(&all()));
+        Self { bsdf, numbers, has_rule }
     }
-    numbers.iter().map(|number| number.value).collect()
+
+    /// Values in the order of its numbers. Where they break a rule, one after the other is drawn again until they do not.
+    pub(crate) fn draw(&self, random: &mut Random) -> Vec<f32> {
+        let mut values: Vec<f32> = self.numbers.iter().map(|n| random_value(n.parameter, random)).collect();
+        if self.has_rule {
+            for _ in 0..1000 {
+                if self.bsdf.domain_at(&values) {
+                    return values;
+                }
+                let index = (random.bits() % self.numbers.len() as u64) as usize;
+                values[index] = random_value(self.numbers[index].parameter, random);
+            }
+            return self.numbers.iter().map(|number| number.value).collect();
+        }
+        values
+    }
 }
 
 #[cfg(test)]
@@ -183,7 +206,8 @@ mod tests {
         for variant in variants() {
             let surface = variant.surface();
             let (numbers, mut random) = (DynBsdf::numbers(&surface), Random::new(3));
-            let all: Vec<Vec<f32>> = (0..500).map(|_| random_values(&surface, &numbers, &mut random)).collect();
+            let values = RandomValues::new(&surface);
+            let all: Vec<Vec<f32>> = (0..500).map(|_| values.draw(&mut random)).collect();
             for (i, number) in numbers.iter().enumerate() {
                 let own = |end: f64| all.iter().any(|values| values[i] == end as f32);
                 assert!(own(number.parameter.quantity.lo) && own(number.parameter.quantity.hi), "{}", variant.name);

@@ -317,12 +317,12 @@ fn around() -> [Task<'static>; 2] {
                 let quantity = number.parameter.quantity;
                 x.max(quantity.lo as f32).min(quantity.hi as f32)
             },
-            |bsdf, run| totality::measure_special(bsdf, run),
+            totality::measure_special,
         ),
         spoilt(
             "alphas for which D overflows",
             |number, x| if number.is(Role::Alpha) { x * 1e-25 } else { x },
-            |bsdf, run| totality::measure_inside(bsdf, run),
+            totality::measure_inside,
         ),
     ]
 }

@@ -1,11 +1,11 @@
 //! The kernel against the oracle: random parameters and directions, in `f64`, to five digits at the worst place and twelve elsewhere.
 
-use crate::catalog::{Variant, random_values};
+use crate::catalog::{RandomValues, Variant};
 use crate::directions::{any_above, partner, show};
 use crate::finding::{Finding, Run};
 use crate::oracle;
 use crate::probe::{BsdfValue, Dir, Kind, LobeProbe, Probe};
-use crate::test_bsdf::{DynBsdf, TestBsdf};
+use crate::test_bsdf::TestBsdf;
 use gonio_kernel::lobe::AnyLobe;
 use gonio_kernel::units::{Flux, LUMINOUS_EFFICACY};
 use gonio_kernel::{Alpha, Lobe, Rgb, Roughness, fresnel};
@@ -32,11 +32,11 @@ pub(crate) fn exists(variant: &Variant) -> bool {
 /// One variant at random parameters.
 pub(crate) fn measure(variant: &Variant, model: Model, run: &Run) -> Finding {
     let mut random = run.random();
-    let numbers = DynBsdf::numbers(&variant.lobe);
+    let random_values = RandomValues::new(&variant.lobe);
     let transmits = variant.lobe.properties().transmits;
     let mut finding = Finding::at_most(LIMIT, "max |kernel − oracle| / oracle ≤");
     for _ in 0..run.by_effort(20_000, 300_000, 3_000_000) {
-        let values = random_values(&variant.lobe, &numbers, &mut random);
+        let values = random_values.draw(&mut random);
         let lobe = variant.lobe.at(&values).double();
         let mut wo = any_above(&mut random);
         let mut wi = partner(&mut random, wo);

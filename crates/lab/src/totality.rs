@@ -7,7 +7,7 @@
 //! them are outside the domain and stop at the guard.) [`measure_probe`]: the same for any lobe as it is, which need not
 //! be total outside its domain, but must not panic.
 
-use crate::catalog::random_values;
+use crate::catalog::RandomValues;
 use crate::directions::{any_above, partner, show};
 use crate::finding::{Finding, Run};
 use crate::probe::{Kind, Probe, demote, promote};
@@ -65,12 +65,13 @@ pub(crate) fn measure_inside(bsdf: &dyn DynBsdf, run: &Run) -> Finding {
     let mut finding = Finding::at_most(0.0, "unsound results without a guard, inside the domain ≤");
     let mut unsound = 0_usize;
     let mut first = String::new();
-    // Models share the pairs of a quick run: there are twice as many variants as a minute has room for.
+    // A quick run takes half as many pairs: a minute has no room for more of every variant.
     let rounds = run.by_effort(300_000, 1_250_000, 6_250_000);
+    let random_values = RandomValues::new(bsdf);
     let mut lanes = vec![[0.0_f32; 8]; numbers.len()];
     for _ in 0..rounds {
         let questions: [Question; 8] = std::array::from_fn(|l| {
-            let values = random_values(bsdf, &numbers, &mut random);
+            let values = random_values.draw(&mut random);
             lanes.iter_mut().zip(&values).for_each(|(lanes, x)| lanes[l] = *x);
             let (wo, wi) = pair(transmits, index.map(|index| values[index]), &mut random);
             Question { wo, wi, u: [(); 3].map(|()| random.coarse() as f32) }
@@ -151,6 +152,7 @@ pub(crate) fn measure_special(bsdf: &dyn DynBsdf, run: &Run) -> Finding {
     let mut first = String::new();
     let count = numbers.len();
     let places = count + 6 + 3;
+    let random_values = RandomValues::new(bsdf);
     // Every special number beside every other, in every two places.
     let two: Vec<(usize, usize)> = (0..places).flat_map(|b| (0..b).map(move |a| (a, b))).collect();
     let products = two.len() * SPECIAL.len() * SPECIAL.len();
@@ -160,7 +162,7 @@ pub(crate) fn measure_special(bsdf: &dyn DynBsdf, run: &Run) -> Finding {
         let mut x: Vec<f32> = Vec::with_capacity(places);
         if round < products {
             let (wo, wi) = pair(transmits, None, &mut random);
-            x.extend(random_values(bsdf, &numbers, &mut random));
+            x.extend(random_values.draw(&mut random));
             x.extend(<[f32; 3]>::from(wo).into_iter().chain(<[f32; 3]>::from(wi)));
             x.extend([(); 3].map(|()| random.coarse() as f32));
             let (a, b) = two[round / (SPECIAL.len() * SPECIAL.len())];
