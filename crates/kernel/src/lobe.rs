@@ -145,10 +145,9 @@ pub struct Sample<R: Real> {
     pub event: Event<R>,
 }
 
-/// What a lobe claims of itself at its parameters. Instruments measure every claim, those of broken laws too, so a claim can be
-/// stale in either way.
+/// What a lobe claims of itself at its parameters: `Properties { one_to_one: true, ..Properties::LAWFUL }`. Instruments measure every
+/// claim, those of broken laws too, so a claim can be stale in either way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Properties<R> {
     /// Helmholtz reciprocity, f(wo, wi) = f(wi, wo), through an interface up to η²; else it is measurably broken.
     pub reciprocal: bool,
