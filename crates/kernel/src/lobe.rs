@@ -177,7 +177,7 @@ pub struct Properties<R> {
 }
 
 impl<R> Properties<R> {
-    /// Reciprocal, conserves energy exactly, accurate to 8 units; continuous reflection whose albedo is not known.
+    /// Reciprocal but for rounding, conserves energy exactly, accurate to 8 units; continuous reflection whose albedo is not known.
     pub const LAWFUL: Self = Self {
         reciprocal: true,
         conserving: true,
@@ -188,7 +188,7 @@ impl<R> Properties<R> {
         anisotropic: false,
         transmits: false,
         one_to_one: false,
-        symmetric: true,
+        symmetric: false,
         albedo: None,
         albedo_error: 0.0,
     };
