@@ -73,7 +73,8 @@ impl<R: Real, L: Lobe<R>> Closure<R, L> {
         if event.is_delta.any() {
             value = Value::select(event.is_delta, self.lobe.delta(&sample), value);
         }
-        let possible = !event.failed & value.pdf.gt(R::ZERO);
+        // The least normal `f32`: the inverse of less may be infinite.
+        let possible = !event.failed & value.pdf.ge(R::lit(f64::from(f32::MIN_POSITIVE)));
         let ok = self.valid & wi.is_direction() & value.is_sound() & possible;
         let Value { f_cos, pdf } = value.or_zero(ok);
         let weight = (f_cos * value.pdf.recip()).or_zero(ok);
