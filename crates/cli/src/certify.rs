@@ -9,10 +9,9 @@ use crate::random::seed;
 use crate::usage::spinner;
 use anyhow::{Context, Result, anyhow};
 use count::{Count, count};
-use gonio_kernel::Surface;
-use gonio_lab::{Call, Certificate, Effort, Options, certify_surface};
-use gonio_tracer::constant_surface;
+use gonio_lab::{Call, Certificate, Effort, Options, certify};
 use gonio_tracer::scene::Material;
+use gonio_tracer::{MaterialSurface, constant_surface};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -81,10 +80,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let options = Options { seed: args.seed, ..Options::new(effort) };
     let spinner = spinner("measuring the material");
-    let certificate = certify_surface(&name, &surface, &options);
+    let certificate = certify(&name, &surface, &options);
     let instructions = if args.instructions { count(&args.material) } else { Err("not asked for".to_owned()) };
     if let Some(path) = &args.report {
-        let plots = gonio_lab::plots::of_surface(&name, &surface, &options);
+        let plots = gonio_lab::plots::of(&name, &surface, &options);
         write_text(&Target::File(path.clone()), &page::page(&certificate, &options, &instructions, &plots))?;
     }
     if let Some(spinner) = spinner {
@@ -111,16 +110,16 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 }
 
 /// Name and surface of a material file.
-fn load(path: &Path) -> Result<(String, Surface<f32>)> {
+fn load(path: &Path) -> Result<(String, MaterialSurface<f32>)> {
     let text = std::fs::read_to_string(path).with_context(|| format!("{}: cannot be read", path.display()))?;
     let material = Material::from_toml_str(&text, path)?;
-    let surface = constant_surface::<f32>(&material)
+    let surface = constant_surface(&material)
         .ok_or_else(|| anyhow!("{}: a material with images cannot be certified by itself", path.display()))?;
     Ok((material.name, surface))
 }
 
 impl count::Exercise {
-    fn run(self, surface: &Surface<f32>) {
+    fn run(self, surface: &MaterialSurface<f32>) {
         gonio_lab::exercise(surface, self.call, self.lanes, self.passes);
     }
 }

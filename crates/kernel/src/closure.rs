@@ -73,7 +73,8 @@ impl<R: Real, L: Lobe<R>> Closure<R, L> {
         if event.is_delta.any() {
             value = Value::select(event.is_delta, self.lobe.delta(&sample), value);
         }
-        let possible = !event.failed & value.pdf.gt(R::ZERO);
+        // The least normal `f32`: the inverse of less may be infinite.
+        let possible = !event.failed & value.pdf.ge(R::lit(f64::from(f32::MIN_POSITIVE)));
         let ok = self.valid & wi.is_direction() & value.is_sound() & possible;
         let Value { f_cos, pdf } = value.or_zero(ok);
         let weight = (f_cos * value.pdf.recip()).or_zero(ok);
@@ -192,16 +193,8 @@ mod tests {
         for _ in 0..1000 {
             let (wo, wi) = (random.above(), random.above());
             let u = [random.unit(), random.unit(), random.unit()];
-            let values = [
-                eval(&typed, wo, wi),
-                eval(&flat, wo, wi),
-                eval(&nested, wo, wi),
-            ];
-            let samples = [
-                sample(&typed, wo, u),
-                sample(&flat, wo, u),
-                sample(&nested, wo, u),
-            ];
+            let values = [eval(&typed, wo, wi), eval(&flat, wo, wi), eval(&nested, wo, wi)];
+            let samples = [sample(&typed, wo, u), sample(&flat, wo, u), sample(&nested, wo, u)];
             for i in 1..3 {
                 assert!(close((values[i].pdf / values[0].pdf).into(), 1.0, 1e-5), "{values:?}");
                 assert!(close((values[i].f_cos.r / values[0].f_cos.r).into(), 1.0, 1e-5), "{values:?}");

@@ -145,10 +145,9 @@ pub struct Sample<R: Real> {
     pub event: Event<R>,
 }
 
-/// What a lobe claims of itself at its parameters. Instruments measure every claim, those of broken laws too, so a claim can be
-/// stale in either way.
+/// What a lobe claims of itself at its parameters: `Properties { one_to_one: true, ..Properties::LAWFUL }`. Instruments measure every
+/// claim, those of broken laws too, so a claim can be stale in either way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Properties<R> {
     /// Helmholtz reciprocity, f(wo, wi) = f(wi, wo), through an interface up to η²; else it is measurably broken.
     pub reciprocal: bool,
@@ -178,7 +177,7 @@ pub struct Properties<R> {
 }
 
 impl<R> Properties<R> {
-    /// Reciprocal, conserves energy exactly, accurate to 8 units; continuous reflection whose albedo is not known.
+    /// Reciprocal but for rounding, conserves energy exactly, accurate to 8 units; continuous reflection whose albedo is not known.
     pub const LAWFUL: Self = Self {
         reciprocal: true,
         conserving: true,
@@ -189,7 +188,7 @@ impl<R> Properties<R> {
         anisotropic: false,
         transmits: false,
         one_to_one: false,
-        symmetric: true,
+        symmetric: false,
         albedo: None,
         albedo_error: 0.0,
     };

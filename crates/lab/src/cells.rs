@@ -6,7 +6,7 @@
 //! angle: dω = dt dφ. Integration runs over s = √t (dω = 2s ds dφ), because sinθ = s√(2 − s²) is smooth at the pole.
 //! The pilot only places borders: cells need not be exactly equal for a test to be exact.
 
-use crate::probe::{Dir, Kind, Probe, Worth};
+use crate::probe::{BsdfValue, Dir, Kind, Probe};
 use crate::quadrature::{Integral, integrate};
 use crate::random::Random;
 use gonio_kernel::Vec3;
@@ -104,7 +104,7 @@ impl Cells {
             let radius = s * (2.0 - s * s).max(0.0).sqrt();
             let (x, y) = (radius * phi.cos(), radius * phi.sin());
             let wi = probe.snap(Vec3::new(x * cos - y * sin, x * sin + y * cos, z));
-            let Worth { f_cos: f, pdf } = probe.eval(wo, wi);
+            let BsdfValue { f_cos: f, pdf } = probe.eval(wo, wi);
             // Where the density has run out of numbers, f has nearly.
             let square = |f: f64| if f < 1e-290 { 0.0 } else { f * f / pdf };
             [f[0], f[1], f[2], pdf, square(f[0]), square(f[1]), square(f[2])].map(|v| 2.0 * s * v)

@@ -1,8 +1,8 @@
 //! χ²: are samples distributed as the density says?
 //!
-//! Samples fall into cells of about equal probability that follow the lobe, one bin per discrete event, and one for
+//! Samples fall into cells of about equal probability that follow the lobe, one bin per delta event, and one for
 //! failures. Expected counts are N∫pdf over the cells, by adaptive quadrature of the reference; N times the probability of
-//! each discrete event; and what is left of N for failures, so that ∫pdf + Σ p(discrete) + P(failed) = 1 is part of the
+//! each delta event; and what is left of N for failures, so that ∫pdf + Σ p(delta) + P(failed) = 1 is part of the
 //! test. Pearson's statistic; bins that expect fewer than 25 are pooled, and a pool too small for Pearson gets an exact
 //! Poisson test. How N follows from the fault that is to be found: `statistics.rs`.
 
@@ -10,10 +10,10 @@ use crate::cells::{Cells, USUAL_BINS};
 use crate::check::Effort;
 use crate::directions::VIEWS;
 use crate::finding::{Finding, Run};
-use crate::probe::{Dir, Kind, Worth};
+use crate::probe::{BsdfValue, Dir, Kind};
 use crate::random::Random;
 use crate::statistics::{FAULT_MASS, FAULT_SIZE, POWER, chi2_p, poisson_p, samples_for, size_found};
-use crate::subject::{Prepared, View};
+use crate::under_test::{Prepared, View};
 
 /// Pearson's approximation is used for bins that expect this many: below, its tail at 10⁻⁵ is too thin.
 const LEAST_EXPECTED: f64 = 25.0;
@@ -43,7 +43,7 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
     measure_with(view, run, samples(run), VIEWS.len())
 }
 
-/// As [`measure`], with given numbers of samples and views. A subject with a form in `f32` spends them there.
+/// As [`measure`], with given numbers of samples and views. A lobe with a form in `f32` spends them there.
 pub(crate) fn measure_with(view: View, run: &Run, n: u64, views: usize) -> Finding {
     let mut random = run.random();
     let mut finding = Finding::p_value(run.level);
@@ -72,7 +72,7 @@ pub(crate) fn measure_with(view: View, run: &Run, n: u64, views: usize) -> Findi
 /// Samples, counted.
 struct Counts {
     cells: Vec<u64>,
-    discrete: Vec<((u32, bool), Worth, u64)>,
+    delta: Vec<((u32, bool), BsdfValue, u64)>,
     failed: u64,
     /// Draws without a finite direction.
     lost: u64,
@@ -80,7 +80,7 @@ struct Counts {
 
 fn count(view: View, wo: Dir, cells: &Cells, n: u64, random: &mut Random) -> Counts {
     const BATCH: u64 = 512; // draws of 100 bytes: stays in the first two caches
-    let mut counts = Counts { cells: vec![0; cells.len()], discrete: Vec::new(), failed: 0, lost: 0 };
+    let mut counts = Counts { cells: vec![0; cells.len()], delta: Vec::new(), failed: 0, lost: 0 };
     let (mut u, mut draws) = (Vec::new(), Vec::new());
     let mut left = n;
     while left > 0 {
@@ -97,9 +97,9 @@ fn count(view: View, wo: Dir, cells: &Cells, n: u64, random: &mut Random) -> Cou
                     Some(cell) => counts.cells[cell] += 1,
                     None => counts.lost += 1,
                 },
-                Kind::Discrete(worth, label) => match counts.discrete.iter_mut().find(|d| d.0 == label) {
+                Kind::Delta(value, label) => match counts.delta.iter_mut().find(|d| d.0 == label) {
                     Some(seen) => seen.2 += 1,
-                    None => counts.discrete.push((label, worth, 1)),
+                    None => counts.delta.push((label, value, 1)),
                 },
             }
         }
@@ -137,17 +137,17 @@ fn test(view: View, at: &Prepared, n: u64, random: &mut Random) -> (f64, String)
     if counts.lost > 0 {
         return (0.0, format!("{} samples without a finite direction", counts.lost));
     }
-    let discrete: f64 = counts.discrete.iter().map(|d| d.1.pdf).sum();
-    let failed = 1.0 - total.value[3] - discrete;
+    let delta: f64 = counts.delta.iter().map(|d| d.1.pdf).sum();
+    let failed = 1.0 - total.value[3] - delta;
     // What is not chance: the quadrature's error, and the rounding of the probe's own probabilities.
     let slack = total.error + 4.0 * view.probe.epsilon();
     if !(failed >= -1e-3 && total.value[3].is_finite()) {
-        return (0.0, format!("∫pdf + Σ p(discrete) = {}", 1.0 - failed));
+        return (0.0, format!("∫pdf + Σ p(delta) = {}", 1.0 - failed));
     }
 
     let n = n as f64;
     let bins = counts.cells.iter().copied().zip(integrals.iter().map(|i| i.value[3]));
-    let bins = bins.chain(counts.discrete.iter().map(|d| (d.2, d.1.pdf))).chain([(counts.failed, failed.max(0.0))]);
+    let bins = bins.chain(counts.delta.iter().map(|d| (d.2, d.1.pdf))).chain([(counts.failed, failed.max(0.0))]);
     let (mut statistic, mut used) = (0.0, 0);
     let mut worst = (0.0, 0.0, 0.0);
     let mut pool = (0, 0.0);

@@ -11,7 +11,7 @@ use crate::directions::{any_above, show};
 use crate::finding::{Finding, Run};
 use crate::probe::{Dir, Kind};
 use crate::random::Random;
-use crate::subject::View;
+use crate::under_test::View;
 
 /// Broken laws of samples, and how far from unit length they are.
 pub(crate) fn measure(view: View, run: &Run) -> Finding {
@@ -37,14 +37,14 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
         }
         match draw.kind {
             Kind::Continuous => {
-                let worth = view.probe.eval(wo, wi);
-                if !worth.is_sound() || worth.pdf <= 0.0 {
-                    finding.broken(|| format!("sampled, but worth {worth:?}: {}", here()));
+                let value = view.probe.eval(wo, wi);
+                if !value.is_sound() || value.pdf <= 0.0 {
+                    finding.broken(|| format!("sampled, but its value is {value:?}: {}", here()));
                 }
             }
-            Kind::Discrete(worth, _) => {
-                if !worth.is_sound() || worth.pdf <= 0.0 || worth.pdf > 1.0 + 4.0 * view.probe.epsilon() {
-                    finding.broken(|| format!("discrete, but worth {worth:?}: {}", here()));
+            Kind::Delta(value, _) => {
+                if !value.is_sound() || value.pdf <= 0.0 || value.pdf > 1.0 + 4.0 * view.probe.epsilon() {
+                    finding.broken(|| format!("delta event, but its value is {value:?}: {}", here()));
                 }
             }
             Kind::Failed => {}
@@ -66,7 +66,7 @@ fn extreme_input(random: &mut Random, single: bool) -> [f64; 3] {
 
 /// |pdf · stretching − 1|.
 pub(crate) fn measure_jacobian(view: View, run: &Run) -> Finding {
-    if view.probe.single() || !view.claims.one_to_one {
+    if view.probe.single() || !view.claims.properties.one_to_one {
         return Finding::not_run("needs an f64 form whose sampler is one to one");
     }
     let mut random = run.random();

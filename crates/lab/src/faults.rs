@@ -1,23 +1,24 @@
 //! Planted faults: models that are wrong on purpose, each with the instruments that must notice.
 //!
-//! A check that cannot fail proves nothing. A [`Plant`] is a row of the zoo whose `eval` or `sample` has been spoilt, in
+//! A check that cannot fail proves nothing. A [`Plant`] is a row of the catalog whose `eval` or `sample` has been spoilt, in
 //! `f32` and `f64` alike. The task `planted-faults` fails if one goes unnoticed. All run at the size of a quick run; the
 //! density that is off by 1 % over 5 % of its mass gets the number of samples that the power calculation demands.
 
+use crate::catalog::{Row, rows};
 use crate::finding::{Finding, Run};
-use crate::probe::{Dir, Draw, Kind, Probe, Worth, demote};
+use crate::probe::{BsdfValue, Dir, Draw, Kind, Probe, demote};
 use crate::random::direction;
 use crate::run::Task;
 use crate::statistics::{FAULT_MASS, FAULT_SIZE, samples_for};
-use crate::subject::{Subject, View};
-use crate::walk;
-use crate::zoo::{Row, rows};
-use crate::{Effort, faults_beneath};
-use crate::{chi2, consistency, discrete, furnace, normalisation, precision, reciprocity, totality, weight};
+use crate::under_test::{UnderTest, View};
+use crate::{Effort, mutations};
+use crate::{chi2, consistency, delta, furnace, normalisation, precision, reciprocity, totality, weight};
+use crate::{layering, walk};
+use gonio_kernel::lobe::Layering;
 use std::f64::consts::{PI, TAU};
 use std::panic::resume_unwind;
 
-type Eval = fn(&dyn Probe, Dir, Dir) -> Worth;
+type Eval = fn(&dyn Probe, Dir, Dir) -> BsdfValue;
 type Sample = fn(&dyn Probe, Dir, [f64; 3]) -> Draw;
 type Measure = fn(View, &Run) -> Finding;
 
@@ -44,18 +45,18 @@ const WEIGHT: (&str, Measure) = ("weight", weight::measure);
 const RECIPROCITY: (&str, Measure) = ("reciprocity", reciprocity::measure);
 const PRECISION: (&str, Measure) = ("precision", precision::measure);
 const TOTALITY: (&str, Measure) = ("totality", totality::measure_probe);
-const DISCRETE: (&str, Measure) = ("discrete", discrete::measure);
+const DELTA: (&str, Measure) = ("delta", delta::measure);
 
-fn right(probe: &dyn Probe, wo: Dir, wi: Dir) -> Worth {
+fn right(probe: &dyn Probe, wo: Dir, wi: Dir) -> BsdfValue {
     probe.eval(wo, wi)
 }
 /// The value times a factor.
-fn scaled(worth: Worth, factor: f64) -> Worth {
-    Worth { f_cos: worth.f_cos.map(|f| f * factor), ..worth }
+fn scaled(value: BsdfValue, factor: f64) -> BsdfValue {
+    BsdfValue { f_cos: value.f_cos.map(|f| f * factor), ..value }
 }
 /// The density times a factor.
-fn denser(worth: Worth, factor: f64) -> Worth {
-    Worth { pdf: worth.pdf * factor, ..worth }
+fn denser(value: BsdfValue, factor: f64) -> BsdfValue {
+    BsdfValue { pdf: value.pdf * factor, ..value }
 }
 
 fn plants() -> Vec<Plant> {
@@ -173,13 +174,13 @@ fn plants() -> Vec<Plant> {
             caught_by: &[NORMALISATION, CONSISTENCY, CHI2],
         },
         Plant {
-            name: "discrete event of half its strength",
+            name: "delta event of half its strength",
             row: "half lambert half mirror",
             eval: right,
             sample: Some(|p, wo, u| {
                 let draw = p.sample(wo, u);
-                let Kind::Discrete(worth, label) = draw.kind else { return draw };
-                Draw { kind: Kind::Discrete(scaled(worth, 0.5), label), ..draw }
+                let Kind::Delta(value, label) = draw.kind else { return draw };
+                Draw { kind: Kind::Delta(scaled(value, 0.5), label), ..draw }
             }),
             caught_by: &[ENERGY],
         },
@@ -188,7 +189,7 @@ fn plants() -> Vec<Plant> {
             row: "mirror white",
             eval: right,
             sample: Some(|p, wo, u| Draw { wi: wo, ..p.sample(wo, u) }),
-            caught_by: &[DISCRETE],
+            caught_by: &[DELTA],
         },
         Plant {
             name: "mirror of probability one half",
@@ -196,10 +197,10 @@ fn plants() -> Vec<Plant> {
             eval: right,
             sample: Some(|p, wo, u| {
                 let draw = p.sample(wo, u);
-                let Kind::Discrete(worth, label) = draw.kind else { return draw };
-                Draw { kind: Kind::Discrete(denser(worth, 0.5), label), ..draw }
+                let Kind::Delta(value, label) = draw.kind else { return draw };
+                Draw { kind: Kind::Delta(denser(value, 0.5), label), ..draw }
             }),
-            caught_by: &[DISCRETE, NORMALISATION],
+            caught_by: &[DELTA, NORMALISATION],
         },
         Plant {
             name: "sin² as 1 − cos² in f32",
@@ -226,15 +227,15 @@ fn find_one_percent(view: View, run: &Run) -> Finding {
 }
 
 /// GGX of alpha 0.01 whose D takes sin²θ of the half vector from 1 − cos²θ: exact in f64, three digits in f32.
-fn cancelling(probe: &dyn Probe, wo: Dir, wi: Dir) -> Worth {
-    let worth = probe.eval(wo, wi);
+fn cancelling(probe: &dyn Probe, wo: Dir, wi: Dir) -> BsdfValue {
+    let value = probe.eval(wo, wi);
     if !probe.single() {
-        return worth;
+        return value;
     }
     let m = (demote(wo) + demote(wi)).normalize();
     let q = |sin2: f32| f64::from(m.z * m.z) + f64::from(sin2) * 1e4;
     let ratio = q(m.x * m.x + m.y * m.y) / q(1.0 - m.z * m.z);
-    denser(scaled(worth, ratio * ratio), ratio * ratio)
+    denser(scaled(value, ratio * ratio), ratio * ratio)
 }
 
 /// A spoilt probe.
@@ -245,7 +246,7 @@ struct Spoilt {
 }
 
 impl Probe for Spoilt {
-    fn eval(&self, wo: Dir, wi: Dir) -> Worth {
+    fn eval(&self, wo: Dir, wi: Dir) -> BsdfValue {
         (self.eval)(self.base.as_ref(), wo, wi)
     }
     fn sample(&self, wo: Dir, u: [f64; 3]) -> Draw {
@@ -260,20 +261,23 @@ impl Probe for Spoilt {
     fn single(&self) -> bool {
         self.base.single()
     }
-    fn weight_bound(&self, wo: Dir) -> f64 {
-        self.base.weight_bound(wo)
+    fn radiance_scale(&self, wo: Dir) -> f64 {
+        self.base.radiance_scale(wo)
+    }
+    fn largest_weight(&self, wo: Dir) -> f64 {
+        self.base.largest_weight(wo)
     }
 }
 
 /// The row with the plant in both precisions.
-fn spoil(plant: &Plant, rows: &[Row]) -> Option<Subject<'static>> {
+fn spoil(plant: &Plant, rows: &[Row]) -> Option<UnderTest<'static>> {
     let row = rows.iter().find(|row| row.name == plant.row)?;
-    let mut subject = Subject::of_surface(&row.name, &row.surface());
+    let mut spoilt = UnderTest::of(&row.name, &row.surface);
     let spoil =
         |base: Box<dyn Probe>| -> Box<dyn Probe> { Box::new(Spoilt { base, eval: plant.eval, sample: plant.sample }) };
-    subject.single = subject.single.take().map(spoil);
-    subject.double = subject.double.take().map(spoil);
-    Some(subject)
+    spoilt.single = spoilt.single.take().map(spoil);
+    spoilt.double = spoilt.double.take().map(spoil);
+    Some(spoilt)
 }
 
 /// One task per fault and instrument.
@@ -283,9 +287,9 @@ pub(crate) fn tasks() -> Vec<Task<'static>> {
         for &(instrument, measure) in plant.caught_by {
             tasks.push(planted(plant.name, instrument, move |run| {
                 // A row that no longer exists is a fault that is not caught.
-                let Some(subject) = spoil(&plant, &rows()) else { return Finding::at_most(0.0, "no such row") };
+                let Some(spoilt) = spoil(&plant, &rows()) else { return Finding::at_most(0.0, "no such row") };
                 let double = instrument == JACOBIAN.0;
-                let view = subject.views().find(|view| view.probe.single() != double);
+                let view = spoilt.views().find(|view| view.probe.single() != double);
                 view.map_or_else(|| Finding::at_most(0.0, "no such view"), |view| measure(view, run))
             }));
         }
@@ -293,7 +297,15 @@ pub(crate) fn tasks() -> Vec<Task<'static>> {
     for (name, model) in walk_faults() {
         tasks.push(planted(name, "walk", move |run| walk::measure(model, run)));
     }
-    tasks.extend(faults_beneath::tasks());
+    for (name, model) in layering::FAULTS {
+        tasks.push(planted(name, "layering", move |run| {
+            layering::measure_energy(model, Layering::FurnacePreserving, run)
+        }));
+    }
+    tasks.push(planted("a base darker than the slab", "layering", |run| {
+        layering::measure_slab(layering::too_dark, run)
+    }));
+    tasks.extend(mutations::tasks());
     tasks
 }
 

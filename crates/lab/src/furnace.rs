@@ -1,15 +1,15 @@
 //! The furnace: under a uniform sky of radiance 1 a surface returns its directional albedo ∫ f cosθ dω, by two ways.
 //!
-//! Quadrature of `eval` plus the strengths of the discrete events, and the mean weight of samples (failures weigh 0), must
+//! Quadrature of `eval` plus the values of the delta events, and the mean weight of samples (failures weigh 0), must
 //! agree. Weights are bounded and their true variance ∫ f²/pdf − albedo² is known by quadrature as well, so Bennett's
 //! inequality gives a p-value that holds even where nearly all weights are equal. Besides, no albedo may exceed 1 (or what a
 //! fitted model admits); and where the albedo is known exactly (white Lambert and mirror return everything) it must be that.
 
 use crate::finding::{Finding, Run};
-use crate::probe::{Dir, Kind, Worth};
+use crate::probe::{BsdfValue, Dir, Kind};
 use crate::random::Random;
 use crate::statistics::bennett_p;
-use crate::subject::{Prepared, View};
+use crate::under_test::{Prepared, View};
 use gonio_kernel::Properties;
 
 /// Agreement of quadrature and sampling.
@@ -20,12 +20,12 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
     for at in view.prepared() {
         let sampled = sample(view, at.wo, n, &mut random);
         // Where no bound is promised, the largest weight of the sample must do.
-        let bound = Some(view.probe.weight_bound(at.wo)).filter(|bound| bound.is_finite());
+        let bound = Some(view.probe.largest_weight(at.wo)).filter(|bound| bound.is_finite());
         let reach = bound.map_or(sampled.largest, |bound| bound.max(sampled.largest));
         for c in 0..3 {
-            let albedo = at.total.value[c] + sampled.discrete.iter().map(|d| d.1.f_cos[c]).sum::<f64>();
+            let albedo = at.total.value[c] + sampled.delta.iter().map(|d| d.1.f_cos[c]).sum::<f64>();
             let square =
-                at.total.value[4 + c] + sampled.discrete.iter().map(|d| d.1.f_cos[c] * d.1.weight()[c]).sum::<f64>();
+                at.total.value[4 + c] + sampled.delta.iter().map(|d| d.1.f_cos[c] * d.1.weight()[c]).sum::<f64>();
             let mean = sampled.sum[c] / n as f64;
             // Not chance: the quadrature's error, and rounding, of weights and of their sum, which may all go one way.
             let slack = at.total.error + rounding(view) + f64::EPSILON * n as f64;
@@ -56,14 +56,14 @@ pub(crate) fn measure_bound(view: View, run: &Run) -> Finding {
     let mut largest = (0.0_f64, "");
     for Prepared { name, wo, total, .. } in view.prepared() {
         let sampled = sample(view, *wo, 1000, &mut random);
-        let unit = total.error + rounding(view) + view.claims.slack + f64::from(excess);
+        let unit = total.error + rounding(view) + f64::from(view.claims.properties.albedo_error) + f64::from(excess);
         for c in 0..3 {
-            let albedo = total.value[c] + sampled.discrete.iter().map(|d| d.1.f_cos[c]).sum::<f64>();
+            let albedo = total.value[c] + sampled.delta.iter().map(|d| d.1.f_cos[c]).sum::<f64>();
             if albedo > largest.0 {
                 largest = (albedo, name);
             }
             finding.raise((albedo - 1.0) / unit, || format!("{name}, channel {c}: albedo {albedo}"));
-            let Some(known) = view.claims.albedo else { continue };
+            let Some(known) = view.claims.properties.albedo.map(<[f64; 3]>::from) else { continue };
             finding.raise((albedo - known[c]).abs() / unit, || {
                 format!("{name}, channel {c}: albedo {albedo} instead of {}", known[c])
             });
@@ -91,23 +91,23 @@ fn rounding(view: View) -> f64 {
 struct Sampled {
     sum: [f64; 3],
     largest: f64,
-    discrete: Vec<((u32, bool), Worth)>,
+    delta: Vec<((u32, bool), BsdfValue)>,
 }
 
 fn sample(view: View, wo: Dir, n: usize, random: &mut Random) -> Sampled {
     let u: Vec<[f64; 3]> = (0..n).map(|_| random.sampler_input(view.probe.single())).collect();
     let mut draws = Vec::with_capacity(n);
     view.probe.sample_all(wo, &u, &mut draws);
-    let mut sampled = Sampled { sum: [0.0; 3], largest: 0.0, discrete: Vec::new() };
+    let mut sampled = Sampled { sum: [0.0; 3], largest: 0.0, delta: Vec::new() };
     for draw in draws {
         let weight = match draw.kind {
             Kind::Failed => continue,
             Kind::Continuous => view.probe.eval(wo, draw.wi).weight(),
-            Kind::Discrete(worth, label) => {
-                if sampled.discrete.iter().all(|(seen, _)| *seen != label) {
-                    sampled.discrete.push((label, worth));
+            Kind::Delta(value, label) => {
+                if sampled.delta.iter().all(|(seen, _)| *seen != label) {
+                    sampled.delta.push((label, value));
                 }
-                worth.weight()
+                value.weight()
             }
         };
         for (sum, weight) in sampled.sum.iter_mut().zip(weight) {

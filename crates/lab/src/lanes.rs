@@ -1,18 +1,16 @@
 //! Lanes against scalar: lane i of eight equals the scalar `f32` result bit for bit, any NaN equal to any NaN.
 //!
 //! Each lane has its own parameters, directions and random numbers, so a lane that leaks into its neighbour shows.
-//! Ordinary inputs, ordinary ones with one or two special numbers, and all special. The unguarded mixture is compared:
+//! Ordinary inputs, ordinary ones with one or two special numbers, and all special. The unguarded lobe is compared:
 //! behind the guard most extreme inputs would compare zero with zero.
 
-use crate::anatomy;
+use crate::catalog::random_value;
 use crate::finding::{Finding, Run};
-use crate::probe::{lane_event, lane_value};
 use crate::random::Random;
-use crate::totality::{SPECIAL, lane, lanes_of, parameter};
-use crate::zoo::Species;
-use gonio_kernel::closure::Unguarded;
+use crate::test_bsdf::{Answer, DynBsdf, Number, Question};
+use crate::totality::SPECIAL;
 use gonio_kernel::frame::{Frame, facing};
-use gonio_kernel::{Event, F32x8, Real, Surface, Value, Vec3, fresnel, math, warp};
+use gonio_kernel::{F32x8, Real, Sample, Vec3, fresnel, math, warp};
 
 /// Whether two floats are the same: the same bits, or both NaN.
 pub(crate) fn same(a: f32, b: f32) -> bool {
@@ -37,118 +35,61 @@ fn eight(count: usize, random: &mut Random, ordinary: &mut dyn FnMut(&mut Random
 fn pack(x: &[Vec<f32>; 8], at: usize) -> F32x8 {
     F32x8::new(std::array::from_fn(|l| x[l][at]))
 }
-fn pack3(x: &[Vec<f32>; 8], at: usize) -> Vec3<F32x8> {
-    lanes_of(std::array::from_fn(|l| vec3(&x[l], at)))
-}
 fn vec3(x: &[f32], at: usize) -> Vec3<f32> {
     Vec3::new(x[at], x[at + 1], x[at + 2])
 }
 
-/// A mixture of two different random species: parameters, weights, directions and numbers all vary by lane.
-pub(crate) fn measure_mixture(first: &'static Species, second: &'static Species, run: &Run) -> Finding {
-    let (a, b) = (first.parameters.len(), second.parameters.len());
-    let at = a + b + 2; // then come wo, wi and u
+/// A lobe, each lane with numbers of its own: at random, and where it is a given one, half of the time the lobe's.
+pub(crate) fn measure(bsdf: &dyn DynBsdf, given: bool, run: &Run) -> Finding {
+    let numbers = bsdf.numbers();
+    let count = numbers.len();
     let mut ordinary = |random: &mut Random| {
-        let mut x: Vec<f32> = first.parameters.iter().chain(second.parameters).map(|p| parameter(p, random)).collect();
-        x.extend([random.coarse() as f32, random.pick(&[0.0, 0.5, 1.0])]);
-        push_question(random, &mut x);
+        let own = given && random.bits().is_multiple_of(2);
+        let value = |n: &Number, random: &mut Random| if own { n.value } else { random_value(n.parameter, random) };
+        let mut x: Vec<f32> = numbers.iter().map(|number| value(number, random)).collect();
+        let wo = crate::directions::any_above(random);
+        let wi = crate::directions::partner(random, wo);
+        for w in [wo, wi] {
+            x.extend([w.x as f32, w.y as f32, w.z as f32]);
+        }
+        x.extend([(); 3].map(|()| random.coarse() as f32));
         x
     };
-    compare(
-        run,
-        at + 9,
-        &mut ordinary,
-        |x, out| {
-            let numbers: Vec<F32x8> = (0..at).map(|i| pack(x, i)).collect();
-            let surface = Surface::black()
-                .with(numbers[a + b], (first.lanes)(&numbers[..a]))
-                .with(numbers[a + b + 1], (second.lanes)(&numbers[a..a + b]));
-            ask_lanes(&surface, x, at, out);
-        },
-        |x, out| {
-            let surface = Surface::black()
-                .with(x[a + b], (first.single)(&x[..a]))
-                .with(x[a + b + 1], (second.single)(&x[a..a + b]));
-            ask(&surface, x, at, out);
-        },
-    )
-}
-
-/// One surface, each lane with its own or other numbers: of its domain, or special.
-pub(crate) fn measure_surface(surface: &Surface<f32>, run: &Run) -> Finding {
-    let dials = anatomy::dials(surface);
-    let count = dials.len();
-    let mut ordinary = |random: &mut Random| {
-        let moved = random.bits().is_multiple_of(2);
-        let number = |(dial, own): &(anatomy::Dial, f32), random: &mut Random| match moved {
-            true => parameter(&dial.range, random),
-            false => *own,
-        };
-        let mut x: Vec<f32> = dials.iter().map(|dial| number(dial, random)).collect();
-        push_question(random, &mut x);
-        x
+    let question = |x: &[f32]| Question {
+        wo: vec3(x, count),
+        wi: vec3(x, count + 3),
+        u: [x[count + 6], x[count + 7], x[count + 8]],
     };
     let mut finding = compare(
         run,
         count + 9,
         &mut ordinary,
         |x, out| {
-            let mut at = 0..;
-            let lanes = anatomy::rebuilt(surface, |_, _| pack(x, at.next().unwrap_or_default()));
-            ask_lanes(&lanes, x, count, out);
+            let questions = std::array::from_fn(|l| question(&x[l]));
+            let gathered: [Vec<f32>; 8] = std::array::from_fn(|l| x[l][..count].to_vec());
+            for (out, answer) in out.iter_mut().zip(bsdf.answer_gathered(&gathered, &questions)) {
+                push(&answer, out);
+            }
         },
-        |x, out| {
-            let mut at = 0..;
-            let single = anatomy::rebuilt(surface, |_, _| x[at.next().unwrap_or_default()]);
-            ask(&single, x, count, out);
-        },
+        |x, out| push(&bsdf.answer(&x[..count], &question(x)), out),
     );
     finding.note("each lane with numbers of its own".to_owned());
     finding
 }
 
-/// wo, wi and three numbers for a sampler.
-fn push_question(random: &mut Random, x: &mut Vec<f32>) {
-    let wo = crate::directions::any_above(random);
-    let wi = crate::directions::partner(random, wo);
-    for w in [wo, wi] {
-        x.extend([w.x as f32, w.y as f32, w.z as f32]);
+fn push(Answer { value, sample, again, delta }: &Answer, out: &mut Vec<f32>) {
+    for value in [value, again, delta] {
+        out.extend([value.f_cos.r, value.f_cos.g, value.f_cos.b, value.pdf]);
     }
-    x.extend([(); 3].map(|()| random.coarse() as f32));
-}
-
-/// Everything a surface answers in lanes to the questions that begin at number `at`.
-fn ask_lanes(surface: &Surface<F32x8>, x: &[Vec<f32>; 8], at: usize, out: &mut [Vec<f32>; 8]) {
-    let closure = Unguarded::new(surface, pack3(x, at));
-    let value = closure.eval(pack3(x, at + 3));
-    let sample = closure.sample([pack(x, at + 6), pack(x, at + 7), pack(x, at + 8)]);
-    let event = closure.discrete(&sample.event);
-    for (l, out) in out.iter_mut().enumerate() {
-        push_value(lane_value(&value, l), out);
-        push_sample(lane(sample.wi, l), &lane_event(&sample.event, l), out);
-        push_value(lane_value(&event, l), out);
-    }
-}
-/// The same by one scalar.
-fn ask(surface: &Surface<f32>, x: &[f32], at: usize, out: &mut Vec<f32>) {
-    let closure = Unguarded::new(surface, vec3(x, at));
-    let sample = closure.sample([x[at + 6], x[at + 7], x[at + 8]]);
-    push_value(closure.eval(vec3(x, at + 3)), out);
-    push_sample(sample.wi, &sample.event, out);
-    push_value(closure.discrete(&sample.event), out);
-}
-fn push_value(value: Value<f32>, out: &mut Vec<f32>) {
-    out.extend([value.f_cos.r, value.f_cos.g, value.f_cos.b, value.pdf]);
-}
-fn push_sample(wi: Vec3<f32>, event: &Event<f32>, out: &mut Vec<f32>) {
     let truth = |x: bool| f32::from(u8::from(x));
+    let Sample { wi, event } = sample;
     out.extend([
         wi.x,
         wi.y,
         wi.z,
         event.lobe as f32,
         truth(event.transmitted),
-        truth(event.discrete),
+        truth(event.is_delta),
         truth(event.failed),
     ]);
 }

@@ -18,19 +18,31 @@ use crate::slab::Slab;
 use crate::statistics::mean_p;
 use crate::tables::reflected;
 use gonio_kernel::closure::Unguarded;
-use gonio_kernel::lobe::{AnyLobe, Coating, Lambert, Layer, Layering};
+use gonio_kernel::energy::AlbedoCurve;
+use gonio_kernel::lobe::{AnyLobe, Coat, Coating, Lambert, Layer, Layering};
 use gonio_kernel::{Parameters, Rgb, Transport};
+use std::f64::consts::PI;
 
-/// A coat over a diffuse base.
-type Coated = Layer<f64, AnyLobe<'static, f64>, Lambert<f64>>;
+/// What a diffuse base of that albedo returns from one direction to another through a coat of index eta and roughness \[1/sr\].
+pub(crate) type Through = Box<dyn Fn(Dir, Dir) -> f64>;
+/// How such a coat lies over such a base: the kernel's layer, or a planted fault.
+pub(crate) type Model = fn(f64, f64, f64, Layering) -> Through;
 
-/// How a coat of index eta and roughness lies over a diffuse base of that albedo: the kernel's, or a planted fault.
-pub(crate) type Model = fn(f64, f64, f64, Layering) -> Coated;
+/// The kernel's: what the layer adds to its top.
+pub(crate) fn kernel(eta: f64, roughness: f64, base: f64, layering: Layering) -> Through {
+    let layer = Layer::new(coat(eta, roughness), Lambert::new(Rgb::splat(base)), layering);
+    let layer = layer.expect("a dielectric is a coat");
+    Box::new(move |o, i| {
+        let whole = Unguarded::new(&layer, o, Transport::Importance).eval(i).f_cos.g;
+        let top = Unguarded::new(layer.top(), o, Transport::Importance).eval(i).f_cos.g;
+        (whole - top) / i.z
+    })
+}
 
-/// The kernel's.
-pub(crate) fn kernel(eta: f64, roughness: f64, base: f64, layering: Layering) -> Coated {
-    let coat = Coating::new(eta as f32, (roughness * roughness) as f32).lobe().to::<f64>();
-    Layer::new(coat, Lambert::new(Rgb::splat(base)), layering).expect("a dielectric is a coat")
+/// The coat's lobe, its parameters rounded to f32 as those of a material are.
+pub(crate) fn coat(eta: f64, roughness: f64) -> AnyLobe<'static, f64> {
+    let (eta, alpha) = as_built(eta, roughness);
+    Coating::new(eta as f32, alpha as f32).lobe().to::<f64>()
 }
 
 const INDICES: [f64; 6] = [1.1, 1.25, 1.33, 1.5, 1.8, 2.5];
@@ -50,21 +62,16 @@ fn as_built(eta: f64, roughness: f64) -> (f64, f64) {
     (f64::from(eta as f32), f64::from((roughness * roughness) as f32))
 }
 
-/// What the base returns through the coat, f·cos integrated over wi at fixed wo, or over wo at fixed wi; the base is Lambertian and
-/// the coat isotropic, so that no azimuth matters.
-fn through(layer: &Coated, cos: f64, adjoint: bool) -> f64 {
-    let of = |o: Dir, i: Dir| {
-        let whole = Unguarded::new(layer, o, Transport::Importance).eval(i).f_cos.g;
-        let top = Unguarded::new(layer.top(), o, Transport::Importance).eval(i).f_cos.g;
-        (whole - top) / i.z
-    };
-    let fixed = direction(cos, 0.0);
+/// What the base returns, f·cos integrated over wi at fixed wo, or over wo at fixed wi; the base is Lambertian and the coat
+/// isotropic, so that no azimuth matters.
+fn returned(through: &Through, cos: f64, adjoint: bool) -> f64 {
     // Midpoints in √cos, where the curves are smooth: right to 1e-6.
     const STEPS: u32 = 400;
+    let fixed = direction(cos, 0.0);
     let midpoint = |step: u32| {
         let t = (f64::from(step) + 0.5) / f64::from(STEPS);
         let other = direction(t * t, 2.0);
-        let f = if adjoint { of(other, fixed) } else { of(fixed, other) };
+        let f = if adjoint { through(other, fixed) } else { through(fixed, other) };
         f * t * t * 2.0 * t
     };
     (0..STEPS).map(midpoint).sum::<f64>() * std::f64::consts::TAU / f64::from(STEPS)
@@ -73,12 +80,13 @@ fn through(layer: &Coated, cos: f64, adjoint: bool) -> f64 {
 /// All light that returns of a direction of that cosine.
 fn albedo(model: Model, eta: f64, roughness: f64, base: f64, layering: Layering, cos: f64) -> f64 {
     let (eta_built, alpha) = as_built(eta, roughness);
-    reflected(cos, alpha, &[eta_built])[2] + through(&model(eta, roughness, base, layering), cos, false)
+    reflected(cos, alpha, &[eta_built])[2] + returned(&model(eta, roughness, base, layering), cos, false)
 }
 
 /// By how much the albedo over a white base exceeds 1, or falls short, in units of what is allowed.
 pub(crate) fn measure_energy(model: Model, layering: Layering, _run: &Run) -> Finding {
-    let mut finding = Finding::at_most(1.0, "albedo over a white base: excess over 1 in 1e-4, or shortfall in what is allowed ≤");
+    let mut finding =
+        Finding::at_most(1.0, "albedo over a white base: excess over 1 in 1e-4, or shortfall in what is allowed ≤");
     let (mut least, mut most, mut adjoint) = (f64::INFINITY, 0.0_f64, (0.0_f64, String::new()));
     for eta in INDICES {
         for roughness in ROUGHNESSES {
@@ -89,8 +97,8 @@ pub(crate) fn measure_energy(model: Model, layering: Layering, _run: &Run) -> Fi
                 finding.raise((albedo - 1.0) / EXCESS, || format!("{}: albedo {albedo:.6}", at()));
                 finding.raise((1.0 - albedo) / shortfall(roughness), || format!("{}: albedo {albedo:.6}", at()));
                 let (eta_built, alpha) = as_built(eta, roughness);
-                let back = reflected(cos, alpha, &[eta_built])[2]
-                    + through(&model(eta, roughness, 1.0, layering), cos, true);
+                let back =
+                    reflected(cos, alpha, &[eta_built])[2] + returned(&model(eta, roughness, 1.0, layering), cos, true);
                 if back > adjoint.0 {
                     adjoint = (back, at());
                 }
@@ -139,6 +147,36 @@ pub(crate) fn measure_slab(model: Model, run: &Run) -> Finding {
     }
     finding.note(format!("{walks} walks each; a layer is brighter than the slab, {}", differences.join("; ")));
     finding
+}
+
+/// Layers that are wrong on purpose: name, and how the base is attenuated.
+pub(crate) const FAULTS: [(&str, Model); 5] = [
+    ("a base that its coat does not attenuate", |_, _, base, _| Box::new(move |_, _| base / PI)),
+    ("a base attenuated by wo twice", |eta, roughness, base, _| {
+        let coat = Coat::new(curve(eta, roughness), Layering::FurnacePreserving);
+        Box::new(move |o, _| base / PI * coat.transmitted(o).g.powi(2))
+    }),
+    ("both directions without the mean", |eta, roughness, base, _| {
+        let coat = Coat::new(curve(eta, roughness), Layering::FurnacePreserving);
+        Box::new(move |o, i| base / PI * coat.transmitted(o).g * coat.transmitted(i).g)
+    }),
+    ("E off by a hundredth of itself", |eta, roughness, base, _| {
+        let coat = Coat::new(curve(eta, roughness).scaled(Rgb::splat(0.99)), Layering::FurnacePreserving);
+        Box::new(move |o, _| base / PI * coat.transmitted(o).g)
+    }),
+    ("a coat seen as smooth", |eta, _, base, _| {
+        let coat = Coat::new(curve(eta, 0.0), Layering::FurnacePreserving);
+        Box::new(move |o, _| base / PI * coat.transmitted(o).g)
+    }),
+];
+
+fn curve(eta: f64, roughness: f64) -> AlbedoCurve<f64> {
+    coat(eta, roughness).albedo_curve().expect("a dielectric is a coat")
+}
+
+/// A layer that is darker than the slab.
+pub(crate) fn too_dark(eta: f64, roughness: f64, base: f64, layering: Layering) -> Through {
+    kernel(eta, roughness, 0.3 * base, layering)
 }
 
 #[cfg(test)]

@@ -23,11 +23,11 @@
 use crate::finding::{Finding, Run};
 use crate::oracle::beckmann_lambda;
 use crate::precision::largest_change;
-use crate::probe::{Dir, worth};
+use crate::probe::{BsdfValue, Dir};
 use gonio_kernel::fresnel::{self, Fresnel, interface, refracted_cosine};
-use gonio_kernel::lobe::{Conductor, Dielectric, Event, Lambert, RoughDielectric};
-use gonio_kernel::microfacet::{Beckmann, Ggx, Masking, Microfacets};
-use gonio_kernel::{Lobe, Rgb, Vec3};
+use gonio_kernel::lobe::{AnyLobe, Conductor, Dielectric, Lambert, RoughDielectric};
+use gonio_kernel::microfacet::{Beckmann, Distribution, Ggx, Masking, Microfacets};
+use gonio_kernel::{Lobe, Parameters, Rgb, Transport, Vec3};
 use std::sync::OnceLock;
 
 const REFERENCE: &str = include_str!("../../../tests/reference/bsdfs.json");
@@ -36,18 +36,16 @@ const VARIABLE: &str = "GONIO_MITSUBA";
 
 /// Three f_cos, the density and, where an event chooses it, the direction; as radiance.
 type Numbers = [f64; 7];
-/// Parameters, wo and wi to their numbers.
-pub(crate) type Kernel = fn(&[f64], Dir, Dir) -> Numbers;
+/// A lobe, wo and wi to their numbers.
+pub(crate) type Kernel = fn(&AnyLobe<'static, f64>, Dir, Dir) -> Numbers;
 
 /// A model that both have.
 #[derive(Debug)]
 pub(crate) struct Model {
     /// Its name in the file.
     pub(crate) name: &'static str,
-    /// The kernel's answer.
-    pub(crate) kernel: Kernel,
-    /// What is known about the difference.
-    known: fn(&[f64], Dir, Dir) -> Known,
+    /// The lobe of the parameters that the file lists.
+    lobe: fn(&[f64]) -> AnyLobe<'static, f64>,
 }
 
 /// How Mitsuba's answer follows from the kernel's.
@@ -68,78 +66,77 @@ impl Known {
 
 /// The models.
 pub(crate) static MODELS: [Model; 6] = [
-    Model { name: "diffuse", kernel: diffuse, known: |_, _, _| Known::SAME },
-    Model {
-        name: "roughconductor-ggx",
-        kernel: |p, wo, wi| conductor(ggx(p), p, wo, wi),
-        known: |p, wo, wi| Known { density: unbounded(p, wo), facets: facets(ggx(p), 1.0, wo, wi), ..Known::SAME },
-    },
-    Model {
-        name: "roughconductor-beckmann",
-        kernel: |p, wo, wi| conductor(beckmann(p), p, wo, wi),
-        known: |p, wo, wi| Known { facets: facets(beckmann(p), 1.0, wo, wi), ..rational(p, wo, wi) },
-    },
-    Model {
-        name: "roughdielectric-ggx",
-        kernel: |p, wo, wi| dielectric(ggx(p), p, wo, wi),
-        known: |p, wo, wi| through(ggx(p), p, wo, wi, Known::SAME),
-    },
-    Model {
-        name: "roughdielectric-beckmann",
-        kernel: |p, wo, wi| dielectric(beckmann(p), p, wo, wi),
-        known: |p, wo, wi| through(beckmann(p), p, wo, wi, rational(p, wo, wi)),
-    },
-    Model {
-        name: "dielectric",
-        kernel: smooth,
-        known: |p, wo, wi| Known { rounding: rounding(seen_from(p[0], wo), wo.z.abs(), 0.0, wo, wi), ..Known::SAME },
-    },
+    Model { name: "diffuse", lobe: |p| Lambert::new(rgb(p)).into() },
+    Model { name: "roughconductor-ggx", lobe: |p| conductor(ggx(p), p) },
+    Model { name: "roughconductor-beckmann", lobe: |p| conductor(beckmann(p), p) },
+    Model { name: "roughdielectric-ggx", lobe: |p| dielectric(ggx(p), p) },
+    Model { name: "roughdielectric-beckmann", lobe: |p| dielectric(beckmann(p), p) },
+    Model { name: "dielectric", lobe: |p| Dielectric::new(p[0]).into() },
 ];
 
+fn rgb(p: &[f64]) -> Rgb<f64> {
+    Rgb::new(p[0], p[1], p[2])
+}
 fn ggx(p: &[f64]) -> Microfacets<f64> {
     Ggx { alpha_x: p[0], alpha_y: p[1] }.into()
 }
 fn beckmann(p: &[f64]) -> Microfacets<f64> {
     Beckmann { alpha_x: p[0], alpha_y: p[1] }.into()
 }
+fn conductor(microfacets: Microfacets<f64>, p: &[f64]) -> AnyLobe<'static, f64> {
+    let fresnel = Fresnel::Conductor { eta: rgb(&p[2..]), k: rgb(&p[5..]) };
+    Conductor::new(microfacets, fresnel).with_masking(Masking::Separable).into()
+}
+fn dielectric(microfacets: Microfacets<f64>, p: &[f64]) -> AnyLobe<'static, f64> {
+    RoughDielectric::new(microfacets, p[2]).with_masking(Masking::Separable).into()
+}
 
-fn eval(lobe: impl Lobe<f64>, wo: Dir, wi: Dir) -> Numbers {
-    let [r, g, b, pdf] = worth(lobe.eval(wo, wi)).numbers();
+/// The kernel's answer: of what is all delta, the event that crosses the surface, or does not, as wi does.
+pub(crate) fn kernel(lobe: &AnyLobe<'static, f64>, wo: Dir, wi: Dir) -> Numbers {
+    let prepared = lobe.prepare(wo, Transport::Radiance);
+    let (value, wi) = if lobe.properties().all_delta {
+        let last = 1.0_f64.next_down();
+        let sample = lobe.sample(wo, &prepared, [if wo.z * wi.z < 0.0 { last } else { 0.0 }, 0.5, 0.5]);
+        (lobe.delta(wo, &prepared, &sample), sample.wi)
+    } else {
+        (lobe.eval(wo, &prepared, wi), wi)
+    };
+    let [r, g, b, pdf] = BsdfValue::of(value).numbers();
     [r, g, b, pdf, wi.x, wi.y, wi.z]
 }
-fn diffuse(p: &[f64], wo: Dir, wi: Dir) -> Numbers {
-    eval(Lambert::new(Rgb::new(p[0], p[1], p[2])), wo, wi)
-}
-fn conductor(microfacets: Microfacets<f64>, p: &[f64], wo: Dir, wi: Dir) -> Numbers {
-    let fresnel = Fresnel::Conductor { eta: Rgb::new(p[2], p[3], p[4]), k: Rgb::new(p[5], p[6], p[7]) };
-    eval(Conductor::new(microfacets, fresnel).with_masking(Masking::Separable), wo, wi)
-}
-fn dielectric(microfacets: Microfacets<f64>, p: &[f64], wo: Dir, wi: Dir) -> Numbers {
-    eval(RoughDielectric::new(microfacets, p[2]).with_masking(Masking::Separable), wo, wi)
-}
-/// The event that crosses the surface, or does not, as wi does.
-fn smooth(p: &[f64], wo: Dir, wi: Dir) -> Numbers {
-    let glass = Dielectric::new(p[0]);
-    let last = 1.0_f64.next_down();
-    let sample = glass.sample(wo, [if wo.z * wi.z < 0.0 { last } else { 0.0 }, 0.5, 0.5]);
-    let event: Event<f64> = sample.event;
-    let [r, g, b, pdf] = worth(glass.discrete(wo, &event)).numbers();
-    [r, g, b, pdf, sample.wi.x, sample.wi.y, sample.wi.z]
+
+/// What is known about the difference.
+fn difference(lobe: &AnyLobe<'static, f64>, wo: Dir, wi: Dir) -> Known {
+    match lobe {
+        AnyLobe::Conductor(l) => {
+            let masking = masking(&l.microfacets, wo, wi);
+            let density = masking.density * unbounded(&l.microfacets, wo);
+            Known { density, facets: facets(&l.microfacets, 1.0, wo, wi), ..masking }
+        }
+        AnyLobe::RoughDielectric(l) => through(l, wo, wi, masking(&l.microfacets, wo, wi)),
+        AnyLobe::Dielectric(l) => {
+            Known { rounding: rounding(seen_from(l.eta, wo), wo.z.abs(), 0.0, wo, wi), ..Known::SAME }
+        }
+        _ => Known::SAME,
+    }
 }
 
 /// What turns the density within the bound of visible normals into that of all of them.
-fn unbounded(p: &[f64], wo: Dir) -> f64 {
-    let ggx = ggx(p);
-    let s = ggx.smith_length(wo);
-    ggx.reach(wo, s).depth / (wo.z + s)
+fn unbounded(microfacets: &Microfacets<f64>, wo: Dir) -> f64 {
+    let s = microfacets.smith_length(wo);
+    microfacets.reach(wo, s).depth / (wo.z + s)
 }
 
 /// What turns exact Beckmann masking into Walter's (2007, equation 27).
-fn rational(p: &[f64], wo: Dir, wi: Dir) -> Known {
+fn masking(microfacets: &Microfacets<f64>, wo: Dir, wi: Dir) -> Known {
+    if microfacets.distribution != Distribution::Beckmann {
+        return Known::SAME;
+    }
+    let [alpha_x, alpha_y] = microfacets.alphas();
     let ratio = |w: Dir| {
-        let a = w.z.abs() / (p[0] * w.x).hypot(p[1] * w.y);
+        let a = w.z.abs() / (alpha_x * w.x).hypot(alpha_y * w.y);
         let walter = if a < 1.6 { (3.535 + 2.181 * a) * a / (1.0 + (2.276 + 2.577 * a) * a) } else { 1.0 };
-        walter * (1.0 + beckmann_lambda(p[0], p[1], Dir::new(w.x, w.y, w.z.abs())))
+        walter * (1.0 + beckmann_lambda(alpha_x, alpha_y, Dir::new(w.x, w.y, w.z.abs())))
     };
     Known { value: ratio(wo) * ratio(wi), density: ratio(wo), ..Known::SAME }
 }
@@ -154,7 +151,7 @@ fn half(eta: f64, wo: Dir, wi: Dir) -> Dir {
     let h = wo + wi * if wo.z * wi.z < 0.0 { eta } else { 1.0 };
     if h.z < 0.0 { -h } else { h }
 }
-fn facets(microfacets: Microfacets<f64>, eta: f64, wo: Dir, wi: Dir) -> f64 {
+fn facets(microfacets: &Microfacets<f64>, eta: f64, wo: Dir, wi: Dir) -> f64 {
     let h = half(eta, wo, wi);
     microfacets.d(h, h.length2()) * h.z / h.length()
 }
@@ -172,8 +169,8 @@ fn rounding(eta: f64, cos_m: f64, units: f64, wo: Dir, wi: Dir) -> f64 {
     // Where nothing passes, nothing is known.
     ((moved[0].max(moved[1]) + subtracted) / here).min(1.0)
 }
-fn through(microfacets: Microfacets<f64>, p: &[f64], wo: Dir, wi: Dir, masking: Known) -> Known {
-    let eta = seen_from(p[2], wo);
+fn through(l: &RoughDielectric<f64>, wo: Dir, wi: Dir, masking: Known) -> Known {
+    let eta = seen_from(l.eta, wo);
     let h = half(eta, wo, wi);
     let cos = |w: Dir| (w.dot(h).abs() / h.length()).min(1.0);
     let (cos_o, cos_i) = (cos(wo), cos(wi));
@@ -188,7 +185,7 @@ fn through(microfacets: Microfacets<f64>, p: &[f64], wo: Dir, wi: Dir, masking: 
         value: masking.value * ratio,
         density: masking.density * ratio * cosines,
         rounding: rounding(eta, cos_o, 4.0, wo, wi),
-        facets: facets(microfacets, eta, wo, wi),
+        facets: facets(&l.microfacets, eta, wo, wi),
     }
 }
 
@@ -203,23 +200,26 @@ pub(crate) fn measure(model: &Model, kernel: Kernel, _run: &Run) -> Finding {
         }
     };
     let (mut count, mut lit, mut relative) = (0_usize, 0_usize, 0.0_f64);
-    for Material { parameters: p, rows } in file.materials(model.name) {
+    for Material { parameters, rows } in file.materials(model.name) {
+        let lobe = (model.lobe)(parameters);
+        let nudged = nudged(&lobe);
         for row in rows.chunks_exact(10) {
             let (wo, wi) = (vector(&row[..3]), vector(&row[3..6]));
             count += 1;
-            let known = (model.known)(p, wo, wi);
+            let known = difference(&lobe, wo, wi);
             if known.facets < 1.001e-20 && row[6..].iter().all(|x| *x == 0.0) {
                 continue;
             }
             lit += usize::from(row[9] > 0.0);
-            let converted = |p: &[f64], wo: Dir, wi: Dir| {
-                let [r, g, b, pdf, x, y, z] = kernel(p, wo, wi);
-                let Known { value, density, .. } = (model.known)(p, wo, wi);
+            let converted = |lobe: &AnyLobe<'static, f64>, wo: Dir, wi: Dir| {
+                let [r, g, b, pdf, x, y, z] = kernel(lobe, wo, wi);
+                let Known { value, density, .. } = difference(lobe, wo, wi);
                 [r * value, g * value, b * value, pdf * density, x, y, z]
             };
-            let moves = largest_change(|wo, wi| converted(p, wo, wi), nudged(p).map(|p| converted(&p, wo, wi)), wo, wi);
+            let moves = nudged.iter().map(|lobe| converted(lobe, wo, wi));
+            let moves = largest_change(|wo, wi| converted(&lobe, wo, wi), moves, wo, wi);
             let right = [&row[6..], &row[3..6]].concat();
-            for (i, (got, right)) in converted(p, wo, wi).into_iter().zip(right).enumerate() {
+            for (i, (got, right)) in converted(&lobe, wo, wi).into_iter().zip(right).enumerate() {
                 let rounding = if i < 4 { known.rounding * got } else { 0.0 };
                 let limit = got.abs() * 1e-4 + moves[i].max(rounding) + f64::from(f32::MIN_POSITIVE);
                 let error = (got - right).abs();
@@ -228,7 +228,7 @@ pub(crate) fn measure(model: &Model, kernel: Kernel, _run: &Run) -> Finding {
                     let what = ["f_cos red", "f_cos green", "f_cos blue", "pdf", "wi.x", "wi.y", "wi.z"][i];
                     format!(
                         "configuration {count}: {what} {got:.9e} instead of {right:.9e}, limit {limit:.1e}, \
-                         parameters {p:?}, wo {wo:?}, wi {wi:?}"
+                         {lobe:?}, wo {wo:?}, wi {wi:?}"
                     )
                 });
             }
@@ -243,15 +243,18 @@ pub(crate) fn measure(model: &Model, kernel: Kernel, _run: &Run) -> Finding {
     finding
 }
 
-/// The parameters with each in turn moved to the next `f32`, up and down.
-fn nudged(p: &[f64]) -> impl Iterator<Item = Vec<f64>> {
-    (0..p.len()).flat_map(move |at| {
-        [f32::next_up, f32::next_down].map(|next| {
-            let mut moved = p.to_vec();
-            moved[at] = f64::from(next(moved[at] as f32));
-            moved
-        })
-    })
+/// The lobe with each of its numbers in turn moved to the next `f32`, up and down.
+fn nudged(lobe: &AnyLobe<'static, f64>) -> Vec<AnyLobe<'static, f64>> {
+    let mut count = 0;
+    let _: AnyLobe<'static, f64> = lobe.map(&mut |_, _, x| {
+        count += 1;
+        x
+    });
+    let moved = |index: usize, next: fn(f32) -> f32| {
+        let mut at = 0..;
+        lobe.map(&mut |_, _, x| if at.next() == Some(index) { f64::from(next(x as f32)) } else { x })
+    };
+    (0..count).flat_map(|index| [moved(index, f32::next_up), moved(index, f32::next_down)]).collect()
 }
 
 /// Fresnel's equations.
@@ -278,7 +281,13 @@ pub(crate) fn measure_fresnel(_run: &Run) -> Finding {
             for row in rows.chunks_exact(2) {
                 let x = [&row[..1], parameters].concat();
                 let (got, right) = (kernel(&x), row[1]);
-                let moves = nudged(&x).map(|x| (kernel(&x) - got).abs()).fold(0.0, f64::max);
+                let moved = |at: usize, next: fn(f32) -> f32| {
+                    let mut moved = x.clone();
+                    moved[at] = f64::from(next(moved[at] as f32));
+                    (kernel(&moved) - got).abs()
+                };
+                let both = |at| moved(at, f32::next_up).max(moved(at, f32::next_down));
+                let moves = (0..x.len()).map(both).fold(0.0, f64::max);
                 let limit = 32.0 * f64::from(f32::EPSILON) + moves;
                 finding.raise((got - right).abs() / limit, || format!("{name}{x:?} = {got} instead of {right}"));
                 count += 1;

@@ -13,7 +13,6 @@
 //!
 //! The losses themselves are in the note of each row, from viewers that face away from the tilt to those that face towards it.
 
-use crate::anatomy;
 use crate::finding::{Finding, Run};
 use crate::probe::Dir;
 use crate::quadrature::integrate;
@@ -24,7 +23,7 @@ use gonio_kernel::closure::Unguarded;
 use gonio_kernel::fresnel::Fresnel;
 use gonio_kernel::lobe::{AnyLobe, Conductor, Eon, Lambert, Mirror};
 use gonio_kernel::microfacet::Ggx;
-use gonio_kernel::{Frame, Rgb, Surface, Vec3, frame};
+use gonio_kernel::{Frame, Lobe, Parameters, Rgb, Transport, Vec3, frame};
 use std::f64::consts::PI;
 
 /// What is under test: how a frame is tilted, with which normal a viewer is shown, and which light counts.
@@ -47,7 +46,7 @@ pub(crate) const KERNEL: Rules = Rules {
 #[derive(Clone, Copy)]
 pub(crate) struct White {
     name: &'static str,
-    lobe: fn() -> AnyLobe<f32>,
+    lobe: fn() -> AnyLobe<'static, f32>,
 }
 
 pub(crate) const LAMBERT: White = White { name: "white Lambert", lobe: || Lambert::new(Rgb::splat(1.0)).into() };
@@ -82,7 +81,7 @@ const KINKS: f64 = 1e-5;
 pub(crate) fn tasks() -> Vec<Task<'static>> {
     let all = LOBES.into_iter().flat_map(|lobe| TILTS.map(|tilt| (lobe, tilt)));
     all.map(|(lobe, tilt)| {
-        let tests = if anatomy::is_discrete(&(lobe.lobe)()) { 0 } else { views().len() };
+        let tests = if (lobe.lobe)().properties().all_delta { 0 } else { views().len() };
         let subject = format!("{} tilted by {tilt}°", lobe.name);
         Task::new("normal-map", subject, tests, move |run| measure(KERNEL, lobe, tilt, run))
     })
@@ -110,9 +109,8 @@ fn views() -> Vec<View> {
 /// The smallest p-value of samples against the integral; broken where a law is.
 pub(crate) fn measure(rules: Rules, white: White, tilt: f64, run: &Run) -> Finding {
     let mut random = run.random();
-    let lobe = (white.lobe)();
-    let discrete = anatomy::is_discrete(&lobe);
-    let surface: Surface<f64> = anatomy::converted(&Surface::of(lobe));
+    let lobe: AnyLobe<'static, f64> = (white.lobe)().to();
+    let all_delta = lobe.properties().all_delta;
     let (sin, cos) = tilt.to_radians().sin_cos();
     let mut finding = Finding::p_value(run.level);
     let mut losses = Vec::new();
@@ -128,8 +126,8 @@ pub(crate) fn measure(rules: Rules, white: White, tilt: f64, run: &Run) -> Findi
         if n.dot(wo) <= 0.0 || faces && (flat.to_local(n) - Vec3::new(sin, 0.0, cos)).length() > 1e-14 {
             finding.broken(|| format!("{name}: the normal is shown as {:?}", flat.to_local(n)));
         }
-        let loss = if discrete {
-            let loss = seen.mirrored(&surface);
+        let loss = if all_delta {
+            let loss = seen.mirrored(&lobe);
             let up = if faces { mirrored_upwards(&view, tilt) } else { false };
             if loss != f64::from(u8::from(!up)) {
                 finding.broken(|| format!("{name}: {loss} is lost of a mirror that reflects to the outside: {up}"));
@@ -137,10 +135,10 @@ pub(crate) fn measure(rules: Rules, white: White, tilt: f64, run: &Run) -> Findi
             loss
         } else {
             let Returned { albedo, kept, square, error: off } =
-                seen.integrated(&surface, run.by_effort(100_000, 400_000, 2_000_000));
+                seen.integrated(&lobe, run.by_effort(100_000, 400_000, 2_000_000));
             let off = off + if matches!(lobe, AnyLobe::Lambert(_)) { 1e-12 } else { KINKS };
             error = error.max(off);
-            if albedo > 1.0 + off + f64::from(surface.properties().excess) || tilt == 0.0 && albedo - kept > off {
+            if albedo > 1.0 + off + f64::from(lobe.properties().excess) || tilt == 0.0 && albedo - kept > off {
                 finding.broken(|| format!("{name}: albedo {albedo:.9}, {kept:.9} of it on the surface's side"));
             }
             let exact = 0.5 * (1.0 - n.dot(flat.z));
@@ -148,8 +146,8 @@ pub(crate) fn measure(rules: Rules, white: White, tilt: f64, run: &Run) -> Findi
                 finding.broken(|| format!("{name}: {} of {albedo} is lost, exactly it is {exact}", albedo - kept));
             }
             let samples = run.by_effort(100_000, 400_000, 2_000_000);
-            let mean = seen.sampled(&surface, samples, &mut random);
-            let reach = anatomy::largest_weight(&lobe).max(1.0);
+            let mean = seen.sampled(&lobe, samples, &mut random);
+            let reach = lobe.largest_weight(seen.tilted.to_local(seen.wo)).max(1.0);
             let p = bennett_p((mean - kept).abs() - off, samples as f64, square - kept * kept + off, reach);
             finding.lower(p, || format!("{name}: {mean:.6} by samples, {kept:.6} by quadrature"));
             albedo - kept
@@ -191,8 +189,8 @@ struct Returned {
 }
 
 impl Seen {
-    fn integrated(&self, surface: &Surface<f64>, budget: usize) -> Returned {
-        let closure = Unguarded::new(surface, self.tilted.to_local(self.wo));
+    fn integrated(&self, lobe: &AnyLobe<'static, f64>, budget: usize) -> Returned {
+        let closure = Unguarded::new(lobe, self.tilted.to_local(self.wo), Transport::Radiance);
         let (z, n) = (self.flat.z, self.tilted.z);
         let aside = n - z * n.dot(z);
         let tilt = aside.length().atan2(n.dot(z));
@@ -220,8 +218,8 @@ impl Seen {
     }
 
     /// The mean weight of samples, those that do not count being 0.
-    fn sampled(&self, surface: &Surface<f64>, samples: usize, random: &mut Random) -> f64 {
-        let closure = Unguarded::new(surface, self.tilted.to_local(self.wo));
+    fn sampled(&self, lobe: &AnyLobe<'static, f64>, samples: usize, random: &mut Random) -> f64 {
+        let closure = Unguarded::new(lobe, self.tilted.to_local(self.wo), Transport::Radiance);
         let one = |random: &mut Random| {
             let sample = closure.sample(random.sampler_input(false));
             let value = closure.eval(sample.wi);
@@ -232,10 +230,10 @@ impl Seen {
     }
 
     /// What is lost of the one direction into which a mirror reflects.
-    fn mirrored(&self, surface: &Surface<f64>) -> f64 {
-        let closure = Unguarded::new(surface, self.tilted.to_local(self.wo));
+    fn mirrored(&self, lobe: &AnyLobe<'static, f64>) -> f64 {
+        let closure = Unguarded::new(lobe, self.tilted.to_local(self.wo), Transport::Radiance);
         let sample = closure.sample([0.5; 3]);
-        let value = closure.discrete(&sample.event);
+        let value = closure.delta(&sample);
         let counts = (self.rules.counts)(&self.flat, &self.tilted, self.tilted.to_world(sample.wi));
         if counts && value.pdf > 0.0 { 1.0 - value.f_cos.g / value.pdf } else { 1.0 }
     }

@@ -1,4 +1,4 @@
-//! Normalisation: ∫pdf dω + Σ p(discrete) + P(failed) = 1 at every wo.
+//! Normalisation: ∫pdf dω + Σ p(delta) + P(failed) = 1 at every wo.
 //!
 //! Failures are part of the law: a visible normal may mirror wo below the horizon. Their frequency is counted and compared
 //! with what quadrature leaves for them, by an exact Poisson test where failures are rare and a z-test where they are not.
@@ -6,7 +6,7 @@
 use crate::finding::{Finding, Run};
 use crate::probe::Kind;
 use crate::statistics::{mean_p, poisson_p};
-use crate::subject::{Prepared, View};
+use crate::under_test::{Prepared, View};
 
 /// The worst of the four views.
 pub(crate) fn measure(view: View, run: &Run) -> Finding {
@@ -14,7 +14,7 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
     let mut finding = Finding::p_value(run.level);
     let n = run.by_effort(50_000, 500_000, 1_000_000);
     for Prepared { name, wo, total: integral, .. } in view.prepared() {
-        let (mut failed, mut discrete) = (0, Vec::new());
+        let (mut failed, mut delta) = (0, Vec::new());
         let (mut u, mut draws) = (Vec::new(), Vec::new());
         for batch in batches(n) {
             u.clear();
@@ -24,14 +24,14 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
             for draw in &draws {
                 match draw.kind {
                     Kind::Failed => failed += 1,
-                    Kind::Discrete(worth, label) if discrete.iter().all(|(seen, _)| *seen != label) => {
-                        discrete.push((label, worth.pdf));
+                    Kind::Delta(value, label) if delta.iter().all(|(seen, _)| *seen != label) => {
+                        delta.push((label, value.pdf));
                     }
                     _ => {}
                 }
             }
         }
-        let some: f64 = integral.value[3] + discrete.iter().map(|d| d.1).sum::<f64>();
+        let some: f64 = integral.value[3] + delta.iter().map(|d| d.1).sum::<f64>();
         let left = 1.0 - some;
         // The quadrature aims at 10⁻⁹ in all; its own estimate may be more or, at kinks, too little. And a wo that is exact in
         // f32 is only unit to that precision, which moves ∫pdf as much.
@@ -47,7 +47,7 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
             let error = (left * (1.0 - left) / count).sqrt();
             mean_p((failed as f64 / count - left).abs() - slack, error)
         };
-        finding.lower(p, || format!("{name}: ∫pdf + Σ p(discrete) = {some:.8}, {failed} of {n} samples failed"));
+        finding.lower(p, || format!("{name}: ∫pdf + Σ p(delta) = {some:.8}, {failed} of {n} samples failed"));
     }
     finding.note(format!("{n} samples per view"));
     finding

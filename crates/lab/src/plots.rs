@@ -1,19 +1,19 @@
 //! Plots: what the instruments see, for the eye. Nothing here passes or fails.
 //!
-//! Three for each species of the zoo: the directional albedo over angle and width (is energy where it should be?), the
+//! Three for each variant of the catalog: the directional albedo over angle and roughness (is energy where it should be?), the
 //! residual of reciprocity over both angles in units of rounding (is it noise, or structure?), and the residuals of the χ²
 //! test, over its cells and as a histogram beside the normal distribution (is it noise, or structure?).
 
-use crate::anatomy::{Rough, converted};
+use crate::catalog::variants;
 use crate::chi2::observed_and_expected;
 use crate::finding::Run;
-use crate::probe::{Dir, Kind, Probe, SurfaceProbe};
+use crate::probe::{Dir, Kind, Probe};
 use crate::random::{direction, seed_for};
 use crate::run::Options;
-use crate::subject::Subject;
-use crate::white;
-use crate::zoo::{Row, Species, Varied, species};
-use gonio_kernel::{Rgb, Surface};
+use crate::test_bsdf::{DynBsdf, TestBsdf};
+use crate::under_test::UnderTest;
+use crate::white::{self, Varied};
+use gonio_kernel::Rgb;
 
 /// A plot with its words.
 #[derive(Clone, Debug)]
@@ -95,26 +95,37 @@ impl Axis {
     }
 }
 
-/// The same plots of one surface: its white twin's albedo, its own reciprocity and χ².
-pub fn of_surface(name: &str, surface: &Surface<f32>, options: &Options) -> Vec<Plot> {
-    let subject = Subject::of_surface(name, surface);
-    let mut plots = vec![white_albedo(name, surface)];
-    let Some(view) = subject.views().next() else { return plots };
-    if !subject.claims.discrete {
-        if !subject.claims.transmits {
-            plots.push(reciprocity_of(name, "", view.probe));
-        }
-        plots.extend(residuals_of(&subject, "", options));
-    }
+/// The plots of one lobe: its white twin's albedo, its own reciprocity and χ².
+pub fn of<'t>(name: &str, lobe: &impl TestBsdf<'t>, options: &Options) -> Vec<Plot> {
+    let under_test = UnderTest::of(name, lobe);
+    let mut plots = vec![albedo(name, lobe, true)];
+    plots.extend(reciprocity_and_residuals(&under_test, "", options));
     plots
 }
 
-/// All plots; a second or two.
+/// All plots: those of every variant at usual values; some seconds.
 pub fn plots(options: &Options) -> Vec<Plot> {
-    let continuous = |s: &&Species| !s.is_discrete();
-    let mut plots: Vec<Plot> = species().map(albedo).collect();
-    plots.extend(species().filter(continuous).map(reciprocity));
-    plots.extend(species().filter(continuous).flat_map(|s| residuals(s, options)));
+    let variants: Vec<_> = variants().into_iter().map(|variant| (variant.surface(), variant.name)).collect();
+    let of_variant = |(surface, name): &(gonio_kernel::Surface<f32>, String)| {
+        let mut plots = vec![albedo(name, surface, false)];
+        let (numbers, varied) = (DynBsdf::numbers(surface), Varied::any(&DynBsdf::numbers(surface)));
+        if let Some(varied) = varied {
+            let values: Vec<f32> = varied.set(&numbers, varied.typical).into_iter().map(|x| x as f32).collect();
+            let what = format!(", {} = {}", varied.axis.name, varied.typical);
+            plots.extend(reciprocity_and_residuals(&UnderTest::at(name, surface, &numbers, &values), &what, options));
+        }
+        plots
+    };
+    // On all threads, in the order of the list.
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let parts = variants.chunks(variants.len().div_ceil(4 * threads).max(1));
+    let mut plots: Vec<Plot> = std::thread::scope(|scope| {
+        let running: Vec<_> =
+            parts.map(|part| scope.spawn(move || part.iter().flat_map(of_variant).collect::<Vec<_>>())).collect();
+        running.into_iter().flat_map(|part| part.join().unwrap_or_default()).collect()
+    });
+    let order = ["furnace", "reciprocity", "chi2"];
+    plots.sort_by_key(|plot| order.iter().position(|instrument| *instrument == plot.instrument));
     plots
 }
 
@@ -123,44 +134,33 @@ const COSINE_OUT: Axis = Axis { name: "cosθ of wo", lo: 0.0, hi: 1.0, log: fals
 const COLUMNS: usize = 36;
 const ROWS: usize = 24;
 
-/// Over roughness and angle, or over the angle alone.
-fn white_albedo(name: &str, surface: &Surface<f32>) -> Plot {
-    let varied = white::roughness(surface).map(Rough::axis);
-    let (axis, lo, hi, log) = varied.unwrap_or(("nothing varied", 0.0, 1.0, false));
-    let y = Axis { name: axis, lo, hi, log };
+/// Over roughness and angle, or whatever else the lobe says; of the white twin, or of the lobe as it is.
+fn albedo(name: &str, bsdf: &dyn DynBsdf, is_white: bool) -> Plot {
+    let numbers = bsdf.numbers();
+    let varied = if is_white { Varied::roughness(&numbers) } else { Varied::any(&numbers) };
+    let nothing = Axis { name: "nothing varied", lo: 0.0, hi: 1.0, log: false };
+    let y = varied.as_ref().map_or(nothing, |varied| varied.axis.clone());
     let mut values = Vec::with_capacity(COLUMNS * ROWS);
     for line in 0..ROWS {
-        let probe = SurfaceProbe::new(white::white(surface, varied.map(|_| y.at(line, ROWS))), None);
-        values.extend((0..COLUMNS).map(|column| mean_weight(&probe, direction(COSINE_OUT.at(column, COLUMNS), 0.7))));
+        let x = y.at(line, ROWS);
+        let numbers = match (&varied, is_white) {
+            (varied, true) => white::white(&numbers, varied.as_ref().map(|varied| (varied, x))),
+            (Some(varied), false) => varied.set(&numbers, x),
+            (None, false) => numbers.iter().map(|number| f64::from(number.value)).collect(),
+        };
+        let probe = bsdf.double_probe(&numbers);
+        let at = |column| mean_weight(probe.as_ref(), direction(COSINE_OUT.at(column, COLUMNS), 0.7));
+        values.extend((0..COLUMNS).map(at));
     }
+    let (title, light) = match is_white {
+        true => ("White furnace", "Luminance of the light that it returns from a white sky with every reflectance 1"),
+        false => ("Directional albedo", "Luminance of the reflected light under a uniform white sky"),
+    };
     Plot {
         lobe: name.to_owned(),
         instrument: "furnace",
-        title: "White furnace".to_owned(),
-        caption: format!(
-            "Luminance of the light that it returns from a white sky with every reflectance 1, over angle and {axis}."
-        ),
-        figure: Figure::Map(Map { x: COSINE_OUT, y, columns: COLUMNS, values, colours: Colours::Linear(0.0, 1.0) }),
-    }
-}
-
-fn albedo(species: &'static Species) -> Plot {
-    let Varied { name, range: (lo, hi), log, .. } = species.varied;
-    let y = Axis { name, lo, hi, log };
-    let mut values = Vec::with_capacity(COLUMNS * ROWS);
-    for line in 0..ROWS {
-        let probe = SurfaceProbe::<f64>::new(converted(&species.specimen(y.at(line, ROWS) as f32).surface()), None);
-        values.extend((0..COLUMNS).map(|column| mean_weight(&probe, direction(COSINE_OUT.at(column, COLUMNS), 0.7))));
-    }
-    let parts = if species.has_width() { "; what is missing at large widths is light that scatters twice" } else { "" };
-    Plot {
-        lobe: species.name.to_owned(),
-        instrument: "furnace",
-        title: "Directional albedo".to_owned(),
-        caption: format!(
-            "Luminance of the reflected light under a uniform white sky, over angle and {}{parts}.",
-            y.name
-        ),
+        title: title.to_owned(),
+        caption: format!("{light}, over angle and {}.", y.name),
         figure: Figure::Map(Map { x: COSINE_OUT, y, columns: COLUMNS, values, colours: Colours::Linear(0.0, 1.0) }),
     }
 }
@@ -177,19 +177,26 @@ pub(crate) fn mean_weight(probe: &dyn Probe, wo: Dir) -> f64 {
     let weight = |wi, kind| match kind {
         Kind::Failed => [0.0; 3],
         Kind::Continuous => probe.eval(wo, wi).weight(),
-        Kind::Discrete(worth, _) => worth.weight(),
+        Kind::Delta(value, _) => value.weight(),
     };
     let luminance = |[r, g, b]: [f64; 3]| Rgb::new(r, g, b).luminance();
     draws.iter().map(|draw| luminance(weight(draw.wi, draw.kind))).sum::<f64>() / u.len() as f64
 }
 
-fn reciprocity(species: &'static Species) -> Plot {
-    let Varied { name, single, .. } = species.varied;
-    let probe = SurfaceProbe::new(species.specimen(single).surface(), None);
-    reciprocity_of(species.name, &format!(", {name} = {single}"), &probe)
+/// What is not all delta has both; what light passes through only the latter.
+fn reciprocity_and_residuals(under_test: &UnderTest, what: &str, options: &Options) -> Vec<Plot> {
+    let Some(view) = under_test.views().next() else { return Vec::new() };
+    let mut plots = Vec::new();
+    if !under_test.claims.properties.all_delta {
+        if !under_test.claims.properties.transmits {
+            plots.push(reciprocity(&under_test.name, what, view.probe));
+        }
+        plots.extend(residuals(under_test, what, options));
+    }
+    plots
 }
 
-fn reciprocity_of(lobe: &str, what: &str, probe: &dyn Probe) -> Plot {
+fn reciprocity(lobe: &str, what: &str, probe: &dyn Probe) -> Plot {
     const N: usize = 36;
     const AZIMUTHS: usize = 16;
     let eps = probe.epsilon();
@@ -222,21 +229,15 @@ fn reciprocity_of(lobe: &str, what: &str, probe: &dyn Probe) -> Plot {
 }
 
 /// The residuals (observed − expected)/√expected of the second view's cells: over the cells, and how often they occur.
-fn residuals(species: &'static Species, options: &Options) -> [Plot; 2] {
-    let Varied { name, single, .. } = species.varied;
-    let row = Row { name: species.name.to_owned(), ..species.specimen(single) };
-    residuals_of(&Subject::of_surface(&row.name, &row.surface()), &format!(", {name} = {single}"), options)
-}
-
-fn residuals_of(subject: &Subject, what: &str, options: &Options) -> [Plot; 2] {
+fn residuals(under_test: &UnderTest, what: &str, options: &Options) -> [Plot; 2] {
     const SAMPLES: u64 = 500_000;
     const BINS: usize = 17;
-    let view = subject.views().next().expect("a subject has a form");
+    let view = under_test.views().next().expect("it has a form");
     let at = view.prepared().nth(1).expect("there are four views");
-    let seed = seed_for(options.seed, &format!("plot {}", subject.name));
+    let seed = seed_for(options.seed, &format!("plot {}", under_test.name));
     let run = Run { effort: options.effort, seed, level: 0.0 };
     let cells = observed_and_expected(view, at, SAMPLES, &mut run.random());
-    // A cell that expects next to nothing, below the horizon, has no residual worth a colour.
+    // A cell that expects next to nothing, below the horizon, has no residual value a colour.
     let residual = |&(observed, expected): &(u64, f64)| {
         if expected >= 25.0 { (observed as f64 - expected) / expected.sqrt() } else { f64::NAN }
     };
@@ -253,7 +254,7 @@ fn residuals_of(subject: &Subject, what: &str, options: &Options) -> [Plot; 2] {
     let words = format!("{}, {SAMPLES} samples{what}", at.name);
     [
         Plot {
-            lobe: subject.name.clone(),
+            lobe: under_test.name.clone(),
             instrument: "chi2",
             title: "χ² by cell".to_owned(),
             caption: format!("{words}. Cells of about equal probability; noise without structure is right."),
@@ -266,7 +267,7 @@ fn residuals_of(subject: &Subject, what: &str, options: &Options) -> [Plot; 2] {
             }),
         },
         Plot {
-            lobe: subject.name.clone(),
+            lobe: under_test.name.clone(),
             instrument: "chi2",
             title: "χ² residuals".to_owned(),
             caption: format!("{words}. Bars: cells; line: the normal distribution that they should have."),
@@ -281,19 +282,19 @@ mod tests {
     use crate::check::Effort;
 
     #[test]
-    fn every_species_has_its_plots_and_they_show_the_truth() {
+    fn every_variant_has_its_plots_and_they_show_the_truth() {
         let plots = plots(&Options::new(Effort::Quick));
-        for species in species() {
-            let of = |instrument| plots.iter().filter(move |p| p.lobe == species.name && p.instrument == instrument);
-            let Some(Figure::Map(albedo)) = of("furnace").next().map(|p| &p.figure) else { panic!("{}", species.name) };
+        for variant in variants() {
+            let name = &variant.name;
+            let of = |instrument| plots.iter().filter(move |p| p.lobe == *name && p.instrument == instrument);
+            let Some(Figure::Map(albedo)) = of("furnace").next().map(|p| &p.figure) else { panic!("{}", variant.name) };
             // A coarse grid of random numbers, where a lobe of two parts is not smooth, is good to two per cent.
-            assert!(albedo.values.iter().all(|a| (0.0..=1.02).contains(a)), "{}: {:?}", species.name, albedo.values);
-            let specimen = species.specimen(species.varied.single);
-            let symmetric = Subject::of_surface(species.name, &specimen.surface()).claims.symmetric;
+            assert!(albedo.values.iter().all(|a| (0.0..=1.02).contains(a)), "{}: {:?}", variant.name, albedo.values);
+            let symmetric = UnderTest::of(&variant.name, &variant.surface()).claims.properties.symmetric;
             for plot in of("reciprocity") {
                 let Figure::Map(map) = &plot.figure else { panic!("{plot:?}") };
                 // Where the two ways take different roundings, the plot shows how much; only the symmetric are bounded by it.
-                assert!(!symmetric || map.values.iter().all(|r| *r <= 16.0), "{}", species.name);
+                assert!(!symmetric || map.values.iter().all(|r| *r <= 16.0), "{}", variant.name);
             }
             for plot in of("chi2") {
                 let Figure::Histogram(h) = &plot.figure else { continue };
@@ -302,7 +303,8 @@ mod tests {
             }
         }
         // Lambert's albedo is its reflectance, whatever the angle.
-        let Figure::Map(lambert) = &plots[0].figure else { panic!() };
+        let lambert = plots.iter().find(|p| p.lobe == "lambert").map(|p| &p.figure);
+        let Some(Figure::Map(lambert)) = lambert else { panic!() };
         let top = lambert.values.len() - 1;
         assert!((lambert.values[top] - lambert.y.at(23, 24)).abs() < 1e-6);
     }

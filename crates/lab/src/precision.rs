@@ -7,7 +7,7 @@
 use crate::directions::show;
 use crate::finding::{Finding, Run};
 use crate::probe::{Dir, Probe, demote};
-use crate::subject::View;
+use crate::under_test::View;
 use gonio_kernel::Vec3;
 
 /// The four numbers in `f32` and in `f64`, and the errors in units of max(eps f, s).

@@ -1,26 +1,31 @@
 //! `Probe`: a scattering model as an instrument sees it. Plain `f64` in and out, whatever computes inside.
 //!
 //! Instruments are written once against this trait and compiled once. A direction or random number handed to a probe of
-//! `f32` arithmetic must lie on its lattice: [`Probe::snap`] puts it there, so that nothing is rounded unseen.
+//! `f32` arithmetic must lie on its lattice: [`Probe::snap`] puts it there, so that nothing is rounded unseen. Lobes are asked for
+//! importance, of which energy is conserved, and without the closure's guard: what is measured is what the formulas do by themselves.
 
-use gonio_kernel::{
-    Event, F32x8, Lobe, Mask8, Precision, Real, Rgb, Sample, Surface, Value, Vec3,
-    closure::{Transport, Unguarded},
-};
+use gonio_kernel::closure::Unguarded;
+use gonio_kernel::{Event, F32x8, Lobe, Mask8, Precision, Real, Rgb, Sample, Transport, Value, Vec3};
+use std::marker::PhantomData;
 
 /// A direction, local.
 pub(crate) type Dir = Vec3<f64>;
 
 /// f·|cos_i| per channel and density, as the probe's arithmetic gave them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Worth {
-    /// f·|cos_i| \[1/sr\]; for a discrete event its strength.
+pub(crate) struct BsdfValue {
+    /// f·|cos_i| \[1/sr\]; for a delta event its weight times its probability.
     pub(crate) f_cos: [f64; 3],
-    /// Density \[1/sr\]; for a discrete event its probability.
+    /// Density \[1/sr\]; for a delta event its probability.
     pub(crate) pdf: f64,
 }
 
-impl Worth {
+impl BsdfValue {
+    /// The same numbers in `f64`.
+    pub(crate) fn of<R: Scalar>(value: Value<R>) -> Self {
+        let Rgb { r, g, b } = value.f_cos;
+        Self { f_cos: [r.widen(), g.widen(), b.widen()], pdf: value.pdf.widen() }
+    }
     /// f_cos / pdf per channel.
     pub(crate) fn weight(&self) -> [f64; 3] {
         self.f_cos.map(|f| f / self.pdf)
@@ -38,10 +43,10 @@ impl Worth {
 /// What a sample turned out to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Kind {
-    /// From the continuous part: its worth is that of `eval`.
+    /// From the continuous part: its value is that of `eval`.
     Continuous,
-    /// A discrete event of this worth. The label tells events of one wo apart: lobe, reflected or transmitted.
-    Discrete(Worth, (u32, bool)),
+    /// A delta event of this value. The label tells events of one wo apart: lobe, reflected or transmitted.
+    Delta(BsdfValue, (u32, bool)),
     /// Nothing was sampled.
     Failed,
 }
@@ -60,7 +65,7 @@ pub(crate) struct Draw {
 /// A scattering model, measurable.
 pub(crate) trait Probe: Sync {
     /// Value and density of the continuous part.
-    fn eval(&self, wo: Dir, wi: Dir) -> Worth;
+    fn eval(&self, wo: Dir, wi: Dir) -> BsdfValue;
     /// One sample.
     fn sample(&self, wo: Dir, u: [f64; 3]) -> Draw;
     /// Many samples for one wo, appended to `out`.
@@ -70,12 +75,11 @@ pub(crate) trait Probe: Sync {
     /// Whether the arithmetic inside is `f32`.
     fn single(&self) -> bool;
     /// η² seen from wo, which transmitted radiance would be divided by.
-    fn compression(&self, _wo: Dir) -> f64 {
+    fn radiance_scale(&self, _wo: Dir) -> f64 {
         1.0
     }
-    /// The largest weight that sampling may give at wo: 1 unless a mixture must trade between its lobes. Infinite if
-    /// nothing is promised.
-    fn weight_bound(&self, _wo: Dir) -> f64 {
+    /// The largest weight that sampling may give at wo. Infinite if nothing is promised.
+    fn largest_weight(&self, _wo: Dir) -> f64 {
         1.0
     }
 
@@ -119,162 +123,123 @@ fn widen<R: Scalar>(w: Vec3<R>) -> Dir {
 fn narrow<R: Scalar>(w: Dir) -> Vec3<R> {
     Vec3::new(R::lit(w.x), R::lit(w.y), R::lit(w.z))
 }
-/// The same numbers in `f64`.
-pub(crate) fn worth<R: Scalar>(value: Value<R>) -> Worth {
-    let Rgb { r, g, b } = value.f_cos;
-    Worth { f_cos: [r.widen(), g.widen(), b.widen()], pdf: value.pdf.widen() }
-}
-fn draw<R: Scalar>(sample: Sample<R>, discrete: impl FnOnce(&Event<R>) -> Worth) -> Draw {
+
+fn draw<R: Scalar>(sample: &Sample<R>, delta: impl FnOnce() -> Value<R>) -> Draw {
     let Sample { wi, event } = sample;
     let kind = if event.failed {
         Kind::Failed
-    } else if event.discrete {
-        Kind::Discrete(discrete(&event), (event.lobe, event.transmitted))
+    } else if event.is_delta {
+        Kind::Delta(BsdfValue::of(delta()), (event.lobe, event.transmitted))
     } else {
         Kind::Continuous
     };
-    Draw { wi: widen(wi), kind, transmitted: event.transmitted }
+    Draw { wi: widen(*wi), kind, transmitted: event.transmitted }
 }
 
-/// A lobe by itself.
-pub(crate) struct LobeProbe<'a, R, L> {
-    lobe: &'a L,
-    precision: std::marker::PhantomData<fn() -> R>,
+/// A lobe in one scalar arithmetic: a model, a mixture, a surface, or a borrowed lobe.
+pub(crate) struct LobeProbe<R, L> {
+    lobe: L,
+    precision: PhantomData<fn() -> R>,
 }
 
-impl<'a, R: Scalar, L: Lobe<R>> LobeProbe<'a, R, L> {
+impl<R: Scalar, L: Lobe<R>> LobeProbe<R, L> {
     /// The lobe, measurable.
-    pub(crate) fn new(lobe: &'a L) -> Self {
-        Self { lobe, precision: std::marker::PhantomData }
+    pub(crate) fn new(lobe: L) -> Self {
+        Self { lobe, precision: PhantomData }
     }
-    fn as_importance(&self, wo: Dir, through: bool, value: Value<R>) -> Worth {
-        let factor = if through { self.lobe.compression(narrow(wo)) } else { R::ONE };
-        worth(Value { f_cos: value.f_cos * factor, ..value })
-    }
-}
-
-impl<R: Scalar, L: Lobe<R> + Sync> Probe for LobeProbe<'_, R, L> {
-    fn eval(&self, wo: Dir, wi: Dir) -> Worth {
-        self.as_importance(wo, wo.z * wi.z < 0.0, self.lobe.eval(narrow(wo), narrow(wi)))
-    }
-    fn sample(&self, wo: Dir, u: [f64; 3]) -> Draw {
-        let o = narrow(wo);
-        let sample = self.lobe.sample(o, u.map(R::lit));
-        let through = sample.event.transmitted;
-        draw(sample, |event| self.as_importance(wo, through, self.lobe.discrete(o, event)))
-    }
-    fn compression(&self, wo: Dir) -> f64 {
-        self.lobe.compression(narrow(wo)).widen()
-    }
-    fn single(&self) -> bool {
-        R::PRECISION == Precision::Single
-    }
-    fn weight_bound(&self, _wo: Dir) -> f64 {
-        f64::INFINITY
+    fn at(&self, wo: Dir) -> Unguarded<R, &L> {
+        Unguarded::new(&self.lobe, narrow(wo), Transport::Importance)
     }
 }
 
-/// A surface, through the unguarded mixture: what the formulas do by themselves.
-pub(crate) struct SurfaceProbe<R> {
-    surface: Surface<R>,
-    lanes: Option<Surface<F32x8>>,
-    weight_bounds: Vec<f64>,
-}
-
-impl<R: Scalar> SurfaceProbe<R> {
-    /// The surface, measurable. With its eight-lane twin, batches are sampled in lanes (whose equality is tested apart).
-    /// Its lobes weigh at most 1, each by itself.
-    pub(crate) fn new(surface: Surface<R>, lanes: Option<Surface<F32x8>>) -> Self {
-        let weight_bounds = surface.lobes().map(|_| 1.0).collect();
-        Self { surface, lanes, weight_bounds }
-    }
-    /// The same, but its lobes weigh at most this, each by itself.
-    pub(crate) fn with_weight_bounds(self, weight_bounds: Vec<f64>) -> Self {
-        Self { weight_bounds, ..self }
-    }
-    fn at(&self, wo: Dir) -> Unguarded<'_, R> {
-        Unguarded::new(&self.surface, narrow(wo)).carrying(Transport::Importance)
-    }
-}
-
-impl<R: Scalar> Probe for SurfaceProbe<R> {
-    fn eval(&self, wo: Dir, wi: Dir) -> Worth {
-        worth(self.at(wo).eval(narrow(wi)))
+impl<R: Scalar, L: Lobe<R> + Sync> Probe for LobeProbe<R, L> {
+    fn eval(&self, wo: Dir, wi: Dir) -> BsdfValue {
+        BsdfValue::of(self.at(wo).eval(narrow(wi)))
     }
     fn sample(&self, wo: Dir, u: [f64; 3]) -> Draw {
         let closure = self.at(wo);
-        draw(closure.sample(u.map(R::lit)), |event| worth(closure.discrete(event)))
+        let sample = closure.sample(u.map(R::lit));
+        draw(&sample, || closure.delta(&sample))
     }
     fn sample_all(&self, wo: Dir, u: &[[f64; 3]], out: &mut Vec<Draw>) {
-        let Some(lanes) = &self.lanes else {
-            let closure = self.at(wo);
-            out.extend(u.iter().map(|u| draw(closure.sample(u.map(R::lit)), |event| worth(closure.discrete(event)))));
-            return;
-        };
-        let closure = Unguarded::new(lanes, demote(wo).splat_lanes()).carrying(Transport::Importance);
-        for eight in u.chunks(8) {
-            let number = |i: usize| F32x8::new(std::array::from_fn(|l| eight.get(l).map_or(0.0, |u| u[i] as f32)));
-            let Sample { wi, event } = closure.sample([number(0), number(1), number(2)]);
-            let (x, y, z) = (wi.x.to_array(), wi.y.to_array(), wi.z.to_array());
-            let [failed, discrete, transmitted] = [event.failed, event.discrete, event.transmitted].map(Mask8::to_bits);
-            let value = if discrete == 0 { Value::zero() } else { closure.discrete(&event) };
-            for (l, _) in eight.iter().enumerate() {
-                let is = |mask: u32| (mask >> l) & 1 != 0;
-                let kind = if is(failed) {
-                    Kind::Failed
-                } else if is(discrete) {
-                    Kind::Discrete(worth(lane_value(&value, l)), (event.lobe.to_array()[l], is(transmitted)))
-                } else {
-                    Kind::Continuous
-                };
-                out.push(Draw { wi: widen(Vec3::new(x[l], y[l], z[l])), kind, transmitted: is(transmitted) });
-            }
-        }
+        let closure = self.at(wo);
+        out.extend(u.iter().map(|u| {
+            let sample = closure.sample(u.map(R::lit));
+            draw(&sample, || closure.delta(&sample))
+        }));
     }
     fn single(&self) -> bool {
         R::PRECISION == Precision::Single
     }
-    fn compression(&self, wo: Dir) -> f64 {
-        // At most one lobe of a row transmits.
-        self.surface.lobes().map(|l| l.lobe.compression(narrow(wo)).widen()).fold(1.0, |product, one| product * one)
+    fn radiance_scale(&self, wo: Dir) -> f64 {
+        self.lobe.radiance_scale(narrow(wo)).widen()
     }
-    fn weight_bound(&self, wo: Dir) -> f64 {
-        // Lobe i is chosen with pᵢ = wᵢYᵢ/Σwⱼ Yⱼ and weighs at most bᵢ by itself: Σwᵢfᵢ/Σpᵢpdfᵢ ≤ max wᵢbᵢ/pᵢ.
-        let estimates = self.surface.lobes().zip(&self.weight_bounds).filter(|(l, _)| l.weight.widen() > 0.0);
-        let estimates = estimates.map(|(l, &bound)| {
-            (l.weight.widen(), Lobe::albedo_estimate(&l.lobe, narrow::<R>(wo)).luminance().widen(), bound)
-        });
-        let bright: Vec<(f64, f64, f64)> = estimates.filter(|(_, y, _)| *y > 0.0).collect();
-        match bright[..] {
-            [] => 1.0,
-            [(weight, _, bound)] => weight * bound,
-            _ => {
-                let sum: f64 = bright.iter().map(|(w, y, _)| w * y).sum();
-                sum * bright.iter().fold(0.0, |most: f64, (_, y, bound)| most.max(bound / y))
+    fn largest_weight(&self, wo: Dir) -> f64 {
+        self.lobe.largest_weight(narrow(wo)).widen()
+    }
+}
+
+/// A lobe in `f32` with its eight lanes, in which batches are sampled (that both give the same bits is tested apart).
+pub(crate) struct WideProbe<L, W> {
+    scalar: LobeProbe<f32, L>,
+    lanes: W,
+}
+
+impl<L: Lobe<f32>, W: Lobe<F32x8>> WideProbe<L, W> {
+    /// The lobe, measurable.
+    pub(crate) fn new(lobe: L, lanes: W) -> Self {
+        Self { scalar: LobeProbe::new(lobe), lanes }
+    }
+}
+
+impl<L: Lobe<f32> + Sync, W: Lobe<F32x8> + Sync> Probe for WideProbe<L, W> {
+    fn eval(&self, wo: Dir, wi: Dir) -> BsdfValue {
+        self.scalar.eval(wo, wi)
+    }
+    fn sample(&self, wo: Dir, u: [f64; 3]) -> Draw {
+        self.scalar.sample(wo, u)
+    }
+    fn sample_all(&self, wo: Dir, u: &[[f64; 3]], out: &mut Vec<Draw>) {
+        let wo = demote(wo);
+        let wo = Vec3::new(F32x8::splat(wo.x), F32x8::splat(wo.y), F32x8::splat(wo.z));
+        let closure = Unguarded::new(&self.lanes, wo, Transport::Importance);
+        for eight in u.chunks(8) {
+            let number = |i: usize| F32x8::new(std::array::from_fn(|l| eight.get(l).map_or(0.0, |u| u[i] as f32)));
+            let sample = closure.sample([number(0), number(1), number(2)]);
+            let delta = if sample.event.is_delta.to_bits() == 0 { Value::zero() } else { closure.delta(&sample) };
+            for l in 0..eight.len() {
+                out.push(draw(&lane_sample(&sample, l), || lane_value(&delta, l)));
             }
         }
     }
-}
-
-/// Eight copies of a scalar direction.
-pub(crate) trait SplatLanes {
-    /// The same direction in every lane.
-    fn splat_lanes(self) -> Vec3<F32x8>;
-}
-impl SplatLanes for Vec3<f32> {
-    fn splat_lanes(self) -> Vec3<F32x8> {
-        Vec3::new(F32x8::splat(self.x), F32x8::splat(self.y), F32x8::splat(self.z))
+    fn single(&self) -> bool {
+        true
+    }
+    fn radiance_scale(&self, wo: Dir) -> f64 {
+        self.scalar.radiance_scale(wo)
+    }
+    fn largest_weight(&self, wo: Dir) -> f64 {
+        self.scalar.largest_weight(wo)
     }
 }
 
-/// Lane `l` of an event.
-pub(crate) fn lane_event(event: &Event<F32x8>, l: usize) -> Event<f32> {
+/// The directions side by side.
+pub(crate) fn lanes_of(w: [Vec3<f32>; 8]) -> Vec3<F32x8> {
+    Vec3::new(F32x8::new(w.map(|w| w.x)), F32x8::new(w.map(|w| w.y)), F32x8::new(w.map(|w| w.z)))
+}
+
+/// Lane `l` of a sample.
+pub(crate) fn lane_sample(sample: &Sample<F32x8>, l: usize) -> Sample<f32> {
+    let Sample { wi, event } = sample;
     let lane = |mask: Mask8| mask.lane(l);
-    Event {
-        lobe: event.lobe.to_array()[l],
-        transmitted: lane(event.transmitted),
-        discrete: lane(event.discrete),
-        failed: lane(event.failed),
+    Sample {
+        wi: Vec3::new(wi.x.to_array()[l], wi.y.to_array()[l], wi.z.to_array()[l]),
+        event: Event {
+            lobe: event.lobe.to_array()[l],
+            transmitted: lane(event.transmitted),
+            is_delta: lane(event.is_delta),
+            failed: lane(event.failed),
+        },
     }
 }
 

@@ -1,12 +1,12 @@
 //! How long a call takes: loops over directions that the compiler cannot foresee, the median of several batches.
 //!
-//! One thread, the surface's numbers in memory, 256 directions in the cache: a throughput, not a latency. Lanes count per
+//! One thread, the lobe's numbers in memory, behind the guard of a closure, 256 directions in the cache: a throughput, not a latency. Lanes count per
 //! lane: the time of eight calls over eight.
 
-use crate::probe::demote;
+use crate::probe::{demote, lanes_of};
 use crate::random::Random;
-use crate::totality::lanes_of;
-use gonio_kernel::{Closure, F32x8, Lobe, Real, Surface, Vec3};
+use crate::test_bsdf::TestBsdf;
+use gonio_kernel::{Closure, F32x8, Lobe, Real, Vec3};
 use serde::Serialize;
 use std::hint::black_box;
 use std::time::Instant;
@@ -63,10 +63,10 @@ fn promoted<R: Real>(w: Vec3<f32>) -> Vec3<R> {
 }
 
 /// One pass over prepared inputs.
-fn pass<R: Real>(surface: &Surface<R>, call: Call, inputs: &[[Vec3<R>; 3]]) {
-    let surface = black_box(surface);
+fn pass<R: Real, L: Lobe<R>>(lobe: &L, call: Call, inputs: &[[Vec3<R>; 3]]) {
+    let lobe = black_box(lobe);
     for [wo, wi, u] in inputs {
-        let closure = Closure::new(surface, *wo);
+        let closure = Closure::new(lobe, *wo);
         match call {
             Call::Eval => drop(black_box(closure.eval(*wi))),
             Call::Sample => drop(black_box(closure.sample([u.x, u.y, u.z]))),
@@ -99,47 +99,37 @@ fn median_ns(calls: usize, mut pass: impl FnMut()) -> f64 {
     batches[5] * 1e9 / (f64::from(passes) * calls as f64)
 }
 
-/// Times of a surface in each arithmetic.
-pub(crate) fn of_surface(single: &Surface<f32>, double: &Surface<f64>, lanes: &Surface<F32x8>) -> Vec<Speed> {
+/// Times of a lobe in each arithmetic.
+pub(crate) fn of<'t>(lobe: &impl TestBsdf<'t>) -> Vec<Speed> {
+    let (double, lanes) = (lobe.double(), lobe.lanes());
     let (f32s, f64s, eights) = (scalars::<f32>(), scalars::<f64>(), eights());
     let of = |call: Call| {
         let row = |arithmetic, ns| Speed { call: call.name(), arithmetic, ns };
         [
-            row("f32", median_ns(PAIRS, || pass(single, call, &f32s))),
-            row("f64", median_ns(PAIRS, || pass(double, call, &f64s))),
-            row("lanes", median_ns(PAIRS, || pass(lanes, call, &eights))),
+            row("f32", median_ns(PAIRS, || pass(lobe, call, &f32s))),
+            row("f64", median_ns(PAIRS, || pass(&double, call, &f64s))),
+            row("lanes", median_ns(PAIRS, || pass(&lanes, call, &eights))),
         ]
     };
     Call::ALL.into_iter().flat_map(of).collect()
 }
 
-/// Times of a stranger's lobe, without a closure around it.
-pub(crate) fn of_lobe<L: Lobe<f32>>(lobe: &L) -> Vec<Speed> {
-    let inputs = inputs();
-    let of = |call: Call| {
-        let ns = median_ns(PAIRS, || {
-            let lobe = black_box(lobe);
-            for [wo, wi, u] in &inputs {
-                match call {
-                    Call::Eval => drop(black_box(lobe.eval(*wo, *wi))),
-                    Call::Sample => drop(black_box(lobe.sample(*wo, [u.x, u.y, u.z]))),
-                }
-            }
-        });
-        Speed { call: call.name(), arithmetic: "f32", ns }
-    };
-    Call::ALL.into_iter().map(of).collect()
+/// Times of a lobe that exists in `f32` only.
+pub(crate) fn of_single<L: Lobe<f32>>(lobe: &L) -> Vec<Speed> {
+    let inputs = scalars::<f32>();
+    let ns = |call| median_ns(PAIRS, || pass(lobe, call, &inputs));
+    Call::ALL.into_iter().map(|call| Speed { call: call.name(), arithmetic: "f32", ns: ns(call) }).collect()
 }
 
 /// Makes `passes` passes of 256 calls (32 in lanes) and nothing else: for a counter of instructions to look at. Two counts that differ
 /// in their passes alone give the cost of one.
-pub fn exercise(surface: &Surface<f32>, call: Call, lanes: bool, passes: u32) -> u32 {
+pub fn exercise<'t>(lobe: &impl TestBsdf<'t>, call: Call, lanes: bool, passes: u32) -> u32 {
     if lanes {
-        let (surface, eights) = (crate::anatomy::converted::<F32x8>(surface), eights());
-        (0..passes).for_each(|_| pass(&surface, call, &eights));
+        let (lobe, eights) = (lobe.lanes(), eights());
+        (0..passes).for_each(|_| pass(&lobe, call, &eights));
     } else {
         let inputs = scalars::<f32>();
-        (0..passes).for_each(|_| pass(surface, call, &inputs));
+        (0..passes).for_each(|_| pass(lobe, call, &inputs));
     }
     PAIRS as u32
 }

@@ -1,20 +1,19 @@
-//! The range of each number of a surface over which its formulas can be trusted, found by trying.
+//! The range of each number of a lobe over which its formulas can be trusted, found by trying.
 //!
 //! One number moves over its whole domain and far beyond while the others stay. At each value pairs of directions of every
-//! difficult kind go through the unguarded mixture. What comes back must be finite and not negative: the safe range is the
-//! longest unbroken run of such values about the surface's own, and it must cover the domain. Zero and what lies beyond may
+//! difficult kind go through the unguarded lobe. What comes back must be finite and not negative: the safe range is the
+//! longest unbroken run of such values about the lobe's own, and it must cover the domain. Zero and what lies beyond may
 //! fail: that is what the guard is for. In `f32` there is a second, narrower run: over it results are also as near to `f64` as
-//! the precision instrument demands. It must cover the domain too, but for widths below 10⁻⁴: there the rounding of directions
+//! the precision instrument demands. It must cover the domain too, but for alphas below 10⁻⁴: there the rounding of directions
 //! is coarser than the lobe.
 
-use crate::anatomy::{self, Dial, Rough};
 use crate::directions::show;
 use crate::finding::{Finding, Run};
 use crate::precision;
 use crate::probe::{Dir, Kind};
-use crate::subject::{NARROWEST, Subject, View};
-use crate::zoo::Parameter;
-use gonio_kernel::Surface;
+use crate::test_bsdf::{DynBsdf, Number};
+use crate::under_test::{NARROWEST, UnderTest, View};
+use gonio_kernel::model::{Quantity, Role};
 use serde::Serialize;
 
 /// Over which values of one number a surface was found safe, in one float type.
@@ -24,7 +23,7 @@ pub struct SafeRange {
     pub number: String,
     /// `f32` (eight lanes give the same bits) or `f64`.
     pub precision: &'static str,
-    /// Its value in this surface.
+    /// Its value in this lobe.
     pub value: f64,
     /// Its domain.
     pub domain: [f64; 2],
@@ -41,20 +40,20 @@ pub struct SafeRange {
 }
 
 /// Values to try: the domain's ends and between, powers of ten far beyond, zero, and negative ones.
-fn values(range: &Parameter, own: f32) -> Vec<f32> {
-    let mut values = vec![range.lo, range.hi, own, 0.0, -1e-6, -1e-3, -0.1, -1.0];
+fn values(quantity: &Quantity, own: f32) -> Vec<f32> {
+    let (lo, hi) = (quantity.lo, quantity.hi);
+    let mut values = vec![lo as f32, hi as f32, own, 0.0, -1e-6, -1e-3, -0.1, -1.0];
     let steps = 12;
-    match range.log_from {
+    match quantity.log_from {
         Some(from) => {
             values.extend((-40..=38).map(|decade| 10.0_f64.powi(decade) as f32));
-            let (lo, hi) = (f64::from(from).ln(), f64::from(range.hi).ln());
+            let (lo, hi) = (from.ln(), hi.ln());
             values.extend((0..=steps).map(|i| (lo + (hi - lo) * f64::from(i) / f64::from(steps)).exp() as f32));
         }
         None => {
-            let (lo, hi) = (f64::from(range.lo), f64::from(range.hi));
             values.extend((0..=steps).map(|i| (lo + (hi - lo) * f64::from(i) / f64::from(steps)) as f32));
             values.extend([-8, -6, -4, -3, -2].map(|decade| 10.0_f64.powi(decade) as f32));
-            values.extend([1.0 + 1e-6, 1.001, 1.1, 2.0, 10.0, 1e3, 1e6, 1e20, 1e38].map(|x| range.hi * x));
+            values.extend([1.0 + 1e-6, 1.001, 1.1, 2.0, 10.0, 1e3, 1e6, 1e20, 1e38].map(|x| hi as f32 * x));
         }
     }
     // The last interior values may round across the end of the domain by an ulp; those are ends already.
@@ -84,11 +83,13 @@ fn run_about(start: usize, count: usize, good: impl Fn(usize) -> bool) -> Option
 }
 
 /// The safe range of number `index`, in `f32` or `f64`, and whether it covers the domain.
-pub(crate) fn measure(surface: &Surface<f32>, index: usize, single: bool, run: &Run) -> (Finding, SafeRange) {
-    let (dial, own) = anatomy::dials(surface)[index];
-    let Dial { lobe, name, range, rough, .. } = dial;
-    let values = values(&range, own);
-    let wrongs: Vec<Wrong> = values.iter().map(|&x| wrong_at(surface, index, x, single, run)).collect();
+pub(crate) fn measure(bsdf: &dyn DynBsdf, index: usize, single: bool, run: &Run) -> (Finding, SafeRange) {
+    let numbers = bsdf.numbers();
+    let number = numbers[index];
+    let (own, Quantity { lo, hi, .. }) = (number.value, number.parameter.quantity);
+    let [lo, hi] = [lo, hi].map(|end| f64::from(end as f32));
+    let values = values(&number.parameter.quantity, own);
+    let wrongs: Vec<Wrong> = values.iter().map(|&x| wrong_at(bsdf, (&numbers, index), x, single, run)).collect();
     let start = values.iter().position(|&x| x == own).unwrap_or(0);
     let is_precise = |at: usize| wrongs[at].unsound.is_none() && wrongs[at].imprecise.is_none();
     let sound = run_about(start, values.len(), |at| wrongs[at].unsound.is_none());
@@ -100,10 +101,10 @@ pub(crate) fn measure(surface: &Surface<f32>, index: usize, single: bool, run: &
     };
     let (first, last) = precise.unwrap_or((start + 1, start.wrapping_sub(1)));
     let found = SafeRange {
-        number: if lobe == 0 { name.to_owned() } else { format!("lobe {}: {name}", lobe + 1) },
+        number: if number.lobe == 0 { number.name() } else { format!("lobe {}: {}", number.lobe + 1, number.name()) },
         precision: if single { "f32" } else { "f64" },
         value: f64::from(own),
-        domain: [f64::from(range.lo), f64::from(range.hi)],
+        domain: [lo, hi],
         safe: ends(sound),
         precise: ends(precise).filter(|_| single),
         below: first.checked_sub(1).and_then(why),
@@ -111,10 +112,10 @@ pub(crate) fn measure(surface: &Surface<f32>, index: usize, single: bool, run: &
         tried: values.len(),
     };
     let mut finding = Finding::at_most(0.0, "values of the number that are not safe inside its domain ≤");
-    let has_shape = |x: f32| rough != Some(Rough::Width) || x >= NARROWEST;
+    let has_shape = |x: f32| !number.is(Role::Alpha) || x >= NARROWEST;
     let is_bad = |at: &usize| {
         let x = values[*at];
-        let inside = range.lo <= x && x <= range.hi;
+        let inside = lo <= f64::from(x) && f64::from(x) <= hi;
         inside && (wrongs[*at].unsound.is_some() || (wrongs[*at].imprecise.is_some() && has_shape(x)))
     };
     let bad: Vec<usize> = (0..values.len()).filter(is_bad).collect();
@@ -123,12 +124,13 @@ pub(crate) fn measure(surface: &Surface<f32>, index: usize, single: bool, run: &
     (finding, found)
 }
 
-/// What is wrong with the surface whose number `index` is x.
-fn wrong_at(surface: &Surface<f32>, index: usize, x: f32, single: bool, run: &Run) -> Wrong {
-    let moved: Surface<f32> = anatomy::with_number(surface, index, x);
-    let subject = Subject::of_surface_at_any_width("", &moved);
+/// What is wrong with the lobe whose number of that index is x.
+fn wrong_at(bsdf: &dyn DynBsdf, (numbers, index): (&[Number], usize), x: f32, single: bool, run: &Run) -> Wrong {
+    let mut values: Vec<f32> = numbers.iter().map(|number| number.value).collect();
+    values[index] = x;
+    let under_test = UnderTest::at("", bsdf, numbers, &values);
     let mut wrong = Wrong::default();
-    let Some(view) = subject.views().find(|view| view.probe.single() == single) else { return wrong };
+    let Some(view) = under_test.views().find(|view| view.probe.single() == single) else { return wrong };
     let mut random = run.random();
     for _ in 0..run.by_effort(150, 1_000, 10_000) {
         let Some((wo, wi)) = view.pair(&mut random) else { continue };
@@ -155,8 +157,8 @@ fn unsound(view: View, wo: Dir, wi: Dir, u: [f64; 3]) -> Option<String> {
         return Some(format!("samples {} for wo {}, u {u:?}", show(draw.wi), show(wo)));
     }
     match draw.kind {
-        Kind::Discrete(worth, _) if !worth.is_sound() => {
-            Some(format!("a discrete event of {} at wo {}", numbers(worth.numbers()), show(wo)))
+        Kind::Delta(value, _) if !value.is_sound() => {
+            Some(format!("a delta event of {} at wo {}", numbers(value.numbers()), show(wo)))
         }
         _ => None,
     }

@@ -7,6 +7,7 @@ mod albedo;
 mod fit;
 mod ggx;
 
+pub(crate) use albedo::reflected;
 pub(crate) use ggx::missing;
 
 use gonio_kernel::energy::{MEAN, Table, V, W};

@@ -1,20 +1,21 @@
 //! Totality: inside the domain the unguarded formulas are finite and non-negative; outside, a closure is exactly zero.
 //!
-//! Three sweeps over every species. [`measure_inside`]: random parameters over their whole ranges and directions of every
-//! difficult kind, up to the edge of the domain in length, eight at a time, through the unguarded mixture.
+//! Three sweeps. [`measure_inside`]: random parameters over their whole ranges and directions of every difficult kind, up to the edge
+//! of the domain in length, eight at a time, through the unguarded lobe.
 //! [`measure_special`]: through the guard, all pairs of 24 special numbers in all pairs of places of parameters, directions
 //! and random numbers, the others ordinary; all places special at once; and random bits. (Those are a weak test: nearly all of
-//! them are outside the domain and stop at the guard.) [`measure_probe`]: the same for a stranger's lobe, which need not
+//! them are outside the domain and stop at the guard.) [`measure_probe`]: the same for any lobe as it is, which need not
 //! be total outside its domain, but must not panic.
 
+use crate::catalog::RandomValues;
 use crate::directions::{any_above, partner, show};
 use crate::finding::{Finding, Run};
-use crate::probe::{Kind, Probe, demote, lane_value, promote};
+use crate::probe::{Kind, Probe, demote, promote};
 use crate::random::Random;
-use crate::subject::View;
-use crate::zoo::{Parameter, Species};
-use gonio_kernel::lobe::AnyLobe;
-use gonio_kernel::{Closure, F32x8, Surface, Vec3, closure::Unguarded};
+use crate::test_bsdf::{Answer, DynBsdf, Number, Question};
+use crate::under_test::View;
+use gonio_kernel::model::Role;
+use gonio_kernel::{Value, Vec3};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Numbers at which floating-point code goes wrong: zeros, denormals, the borders of overflow, infinities, NaN.
@@ -45,68 +46,45 @@ pub(crate) const SPECIAL: [f32; 24] = [
     f32::NAN,
 ];
 
-/// Makes a lobe of plain numbers.
-pub(crate) type Build<R> = fn(&[R]) -> AnyLobe<R>;
-
-/// A value of a parameter's range, ends included.
-pub(crate) fn parameter(p: &Parameter, random: &mut Random) -> f32 {
-    let (lo, hi) = (f64::from(p.lo), f64::from(p.hi));
-    let x = match random.bits() % 8 {
-        0 => lo,
-        1 => hi,
-        _ => match p.log_from {
-            Some(from) => random.log_between(f64::from(from), hi),
-            None => random.between(lo, hi),
-        },
-    };
-    (x as f32).clamp(p.lo, p.hi)
-}
-
 /// The cosines that make formulas underflow: a direction in the domain may graze as closely as `f32` can say.
 const TINY: [f32; 12] =
     [1e-45, 1e-40, f32::MIN_POSITIVE, 1e-30, 1e-22, 1e-18, 2e-18, 1e-14, 1e-12, 2e-12, 1.1e-10, 1e-9];
 
-/// How many lanes returned something that is not finite or negative, over one species, inside the domain.
-pub(crate) fn measure_inside(species: &Species, build: Build<F32x8>, run: &Run) -> Finding {
-    let (parameters, transmits, index) = (species.parameters, species.transmits(), species.index());
+/// Whether light passes through a lobe, and which of its numbers is the relative index at which it does.
+fn passage(bsdf: &dyn DynBsdf, numbers: &[Number]) -> (bool, Option<usize>) {
+    let values: Vec<f64> = numbers.iter().map(|number| f64::from(number.value)).collect();
+    let transmits = bsdf.properties_at(&values).transmits;
+    (transmits, numbers.iter().position(|number| number.is(Role::Index)).filter(|_| transmits))
+}
+
+/// How many lanes returned something that is not finite or negative, inside the domain.
+pub(crate) fn measure_inside(bsdf: &dyn DynBsdf, run: &Run) -> Finding {
+    let numbers = bsdf.numbers();
+    let (transmits, index) = passage(bsdf, &numbers);
     let mut random = run.random();
     let mut finding = Finding::at_most(0.0, "unsound results without a guard, inside the domain ≤");
     let mut unsound = 0_usize;
     let mut first = String::new();
-    let rounds = run.by_effort(625_000, 1_250_000, 6_250_000);
+    // A quick run takes half as many pairs: a minute has no room for more of every variant.
+    let rounds = run.by_effort(300_000, 1_250_000, 6_250_000);
+    let random_values = RandomValues::new(bsdf);
+    let mut lanes = vec![[0.0_f32; 8]; numbers.len()];
     for _ in 0..rounds {
-        let mut p = vec![[0.0_f32; 8]; parameters.len()];
-        let (mut wo, mut wi) = ([Vec3::unit_z(); 8], [Vec3::unit_z(); 8]);
-        for l in 0..8 {
-            for (p, range) in p.iter_mut().zip(parameters) {
-                p[l] = parameter(range, &mut random);
-            }
-            (wo[l], wi[l]) = pair(transmits, index.map(|index| p[index][l]), &mut random);
-        }
-        let numbers: Vec<F32x8> = p.iter().copied().map(F32x8::new).collect();
-        let surface = Surface::of(build(&numbers));
-        let closure = Unguarded::new(&surface, lanes_of(wo));
-        let value = closure.eval(lanes_of(wi));
-        let u = [(); 3].map(|()| F32x8::new(std::array::from_fn(|_| random.coarse() as f32)));
-        let sample = closure.sample(u);
-        let again = closure.eval(sample.wi);
-        let event = closure.discrete(&sample.event);
-        for l in 0..8 {
-            let sound = |v| lane_value(v, l).is_sound();
-            let w = lane(sample.wi, l);
-            if sound(&value) && sound(&event) && sound(&again) && is_nearly_direction(w) {
+        let questions: [Question; 8] = std::array::from_fn(|l| {
+            let values = random_values.draw(&mut random);
+            lanes.iter_mut().zip(&values).for_each(|(lanes, x)| lanes[l] = *x);
+            let (wo, wi) = pair(transmits, index.map(|index| values[index]), &mut random);
+            Question { wo, wi, u: [(); 3].map(|()| random.coarse() as f32) }
+        });
+        for (l, answer) in bsdf.answer_lanes(&lanes, &questions).into_iter().enumerate() {
+            let Answer { value, sample, again, delta } = answer;
+            if value.is_sound() && delta.is_sound() && again.is_sound() && is_nearly_direction(sample.wi) {
                 continue;
             }
             unsound += 1;
             if first.is_empty() {
-                let p: Vec<f32> = p.iter().map(|p| p[l]).collect();
-                first = format!(
-                    "parameters {p:?}, wo {:?}, wi {:?}: {:?}; sampled {w:?}: {:?}",
-                    <[f32; 3]>::from(wo[l]),
-                    <[f32; 3]>::from(wi[l]),
-                    lane_value(&value, l),
-                    lane_value(&again, l)
-                );
+                let values: Vec<f32> = lanes.iter().map(|lanes| lanes[l]).collect();
+                first = format!("parameters {values:?}, {:?}: {answer:?}", questions[l]);
             }
         }
     }
@@ -165,24 +143,26 @@ fn pair(transmits: bool, eta: Option<f32>, random: &mut Random) -> (Vec3<f32>, V
 }
 
 /// Broken promises of the guarded closure over special numbers.
-pub(crate) fn measure_special(species: &Species, build: Build<f32>, run: &Run) -> Finding {
-    let (parameters, transmits) = (species.parameters, species.transmits());
+pub(crate) fn measure_special(bsdf: &dyn DynBsdf, run: &Run) -> Finding {
+    let numbers = bsdf.numbers();
+    let (transmits, _) = passage(bsdf, &numbers);
     let mut random = run.random();
     let mut finding = Finding::at_most(0.0, "results of the closure that break its promise ≤");
     let mut broken = 0_usize;
     let mut first = String::new();
-    let count = parameters.len();
+    let count = numbers.len();
     let places = count + 6 + 3;
+    let random_values = RandomValues::new(bsdf);
     // Every special number beside every other, in every two places.
     let two: Vec<(usize, usize)> = (0..places).flat_map(|b| (0..b).map(move |a| (a, b))).collect();
     let products = two.len() * SPECIAL.len() * SPECIAL.len();
-    let bits = run.by_effort(1_000_000, 2_000_000, 10_000_000);
+    let bits = run.by_effort(500_000, 2_000_000, 10_000_000);
     let all_special = bits / 10;
     for round in 0..products + all_special + bits {
         let mut x: Vec<f32> = Vec::with_capacity(places);
         if round < products {
             let (wo, wi) = pair(transmits, None, &mut random);
-            x.extend(parameters.iter().map(|p| parameter(p, &mut random)));
+            x.extend(random_values.draw(&mut random));
             x.extend(<[f32; 3]>::from(wo).into_iter().chain(<[f32; 3]>::from(wi)));
             x.extend([(); 3].map(|()| random.coarse() as f32));
             let (a, b) = two[round / (SPECIAL.len() * SPECIAL.len())];
@@ -193,17 +173,17 @@ pub(crate) fn measure_special(species: &Species, build: Build<f32>, run: &Run) -
         } else {
             x.resize_with(places, || f32::from_bits(random.bits() as u32));
         }
-        let judged = catch_unwind(AssertUnwindSafe(|| judge_closure(parameters, build, &x))).unwrap_or(Some("panics"));
-        if let Some(what) = judged {
+        let (values, rest) = x.split_at(count);
+        let question = Question {
+            wo: Vec3::new(rest[0], rest[1], rest[2]),
+            wi: Vec3::new(rest[3], rest[4], rest[5]),
+            u: [rest[6], rest[7], rest[8]],
+        };
+        let judge = || judge_closure(bsdf, &numbers, values, &question);
+        if let Some(what) = catch_unwind(AssertUnwindSafe(judge)).unwrap_or(Some("panics")) {
             broken += 1;
             if first.is_empty() {
-                first = format!(
-                    "{what}: parameters {:?}, wo {:?}, wi {:?}, u {:?}",
-                    &x[..count],
-                    &x[count..count + 3],
-                    &x[count + 3..count + 6],
-                    &x[count + 6..]
-                );
+                first = format!("{what}: parameters {values:?}, {question:?}");
             }
         }
     }
@@ -214,44 +194,41 @@ pub(crate) fn measure_special(species: &Species, build: Build<f32>, run: &Run) -
 }
 
 /// Which promise a closure breaks at these parameters, wo, wi and u.
-fn judge_closure(parameters: &[Parameter], build: Build<f32>, x: &[f32]) -> Option<&'static str> {
-    let count = parameters.len();
-    let (p, rest) = x.split_at(count);
-    let surface = Surface::of(build(p));
-    let wo = Vec3::new(rest[0], rest[1], rest[2]);
-    let wi = Vec3::new(rest[3], rest[4], rest[5]);
-    let closure = Closure::new(&surface, wo);
-    let is_zero = |v: &gonio_kernel::Value<f32>| {
-        // Exactly +0: a weight 0/0 must not become −0/0 either.
-        [v.f_cos.r, v.f_cos.g, v.f_cos.b, v.pdf].iter().all(|x| x.to_bits() == 0)
-    };
-    let value = closure.eval(wi);
+fn judge_closure(bsdf: &dyn DynBsdf, numbers: &[Number], values: &[f32], question: &Question) -> Option<&'static str> {
+    let (value, sample) = bsdf.guarded(values, question);
+    // Exactly +0: a weight 0/0 must not become −0/0 either.
+    let is_zero = |numbers: &[f32]| numbers.iter().all(|x| x.to_bits() == 0);
     if !value.is_sound() {
         return Some("eval is not finite and non-negative");
     }
     // The domain as the lab understands it, not as the kernel computes it.
-    let direction = |w: Vec3<f32>| {
-        let w = promote(w);
-        w.length2() - 1.0
-    };
     // The millionth leaves room for the kernel's f32 arithmetic at the very edge.
-    let outside = |difference: f64| difference.is_nan() || difference.abs() > 1e-3 + 1e-6;
-    let off = |x: f32, range: &Parameter| x.is_nan() || x < 0.99 * range.lo || x > range.hi;
-    let bad_parameter = p.iter().zip(parameters).any(|(&x, range)| off(x, range));
-    if (outside(direction(wo)) || outside(direction(wi)) || bad_parameter) && !is_zero(&value) {
+    let outside = |w: Vec3<f32>| {
+        let difference = promote(w).length2() - 1.0;
+        difference.is_nan() || difference.abs() > 1e-3 + 1e-6
+    };
+    let off = |(number, &x): (&Number, &f32)| {
+        let (x, quantity) = (f64::from(x), number.parameter.quantity);
+        x.is_nan() || x < 0.99 * quantity.lo || x > f64::from(quantity.hi as f32)
+    };
+    let bad_parameter = numbers.iter().zip(values).any(off);
+    let Value { f_cos, pdf } = value;
+    if (outside(question.wo) || outside(question.wi) || bad_parameter) && !is_zero(&[f_cos.r, f_cos.g, f_cos.b, pdf]) {
         return Some("eval is not exactly zero outside the domain");
     }
-    let sample = closure.sample([rest[6], rest[7], rest[8]]);
-    let w = promote(sample.wi);
-    if outside(w.length2() - 1.0) {
+    if outside(sample.wi) {
         return Some("sample returns no finite unit direction");
     }
-    if (outside(direction(wo)) || bad_parameter) && !sample.event.failed {
+    if (outside(question.wo) || bad_parameter) && !sample.event.failed {
         return Some("sample does not fail outside the domain");
     }
-    let event = closure.discrete(&sample.event);
-    if !event.is_sound() || (sample.event.failed && !is_zero(&event)) {
-        return Some("discrete is not sound, or not zero for a failed event");
+    let (f_cos, weight) = (sample.f_cos, sample.weight);
+    if !(Value { f_cos, pdf: sample.pdf }).is_sound() || !(Value { f_cos: weight, pdf: 0.0 }).is_sound() {
+        return Some("a sample's value or weight is not finite and non-negative");
+    }
+    let all = [f_cos.r, f_cos.g, f_cos.b, sample.pdf, weight.r, weight.g, weight.b];
+    if sample.event.failed && !is_zero(&all) {
+        return Some("a failed sample's value or weight is not exactly zero");
     }
     None
 }
@@ -263,7 +240,7 @@ pub(crate) fn measure_probe(view: View, run: &Run) -> Finding {
     let mut broken = 0_usize;
     let mut first = String::new();
     for round in 0..run.by_effort(50_000, 500_000, 2_500_000) {
-        let (wo, wi) = pair(view.claims.transmits, None, &mut random);
+        let (wo, wi) = pair(view.claims.properties.transmits, None, &mut random);
         let u = random.sampler_input(view.probe.single());
         let (mut o, mut i): ([f32; 3], [f32; 3]) = (wo.into(), wi.into());
         let special = round % 2 == 1;
@@ -301,19 +278,9 @@ fn judge_probe(probe: &dyn Probe, wo: Vec3<f64>, wi: Vec3<f64>, u: [f64; 3]) -> 
         return Some("sample returns no finite unit direction");
     }
     match draw.kind {
-        Kind::Discrete(worth, _) if !worth.is_sound() => Some("discrete is not finite and non-negative"),
+        Kind::Delta(value, _) if !value.is_sound() => Some("delta is not finite and non-negative"),
         _ => None,
     }
-}
-
-/// The directions side by side.
-pub(crate) fn lanes_of(w: [Vec3<f32>; 8]) -> Vec3<F32x8> {
-    Vec3::new(F32x8::new(w.map(|w| w.x)), F32x8::new(w.map(|w| w.y)), F32x8::new(w.map(|w| w.z)))
-}
-
-/// One of the directions.
-pub(crate) fn lane(w: Vec3<F32x8>, l: usize) -> Vec3<f32> {
-    Vec3::new(w.x.to_array()[l], w.y.to_array()[l], w.z.to_array()[l])
 }
 
 #[cfg(test)]

@@ -4,10 +4,10 @@
 //! weight 1. The triangle has its own χ², over 64 congruent triangles of expected share 1/64 each.
 
 use crate::finding::{Finding, Run};
-use crate::probe::{Dir, Draw, Kind, Probe, Scalar, Worth, demote, promote};
+use crate::probe::{BsdfValue, Dir, Draw, Kind, Probe, Scalar, demote, promote};
 use crate::statistics::chi2_p;
-use crate::subject::{Claims, Subject};
-use gonio_kernel::warp;
+use crate::under_test::{Claims, UnderTest};
+use gonio_kernel::{Properties, warp};
 
 /// A warp of directions, as a scattering model that does not look at wo.
 pub(crate) struct WarpProbe {
@@ -20,33 +20,34 @@ pub(crate) struct WarpProbe {
 }
 
 /// The warps of directions.
-pub(crate) fn subjects() -> [Subject<'static>; 4] {
-    let subject = |name, sample, pdf, single| {
-        let claims = Claims { one_to_one: true, ..Claims::LAWFUL };
-        Subject::of_probe(name, WarpProbe { sample, pdf, single }, claims)
+pub(crate) fn under_test() -> [UnderTest<'static>; 4] {
+    let warp = |name, sample, pdf, single| {
+        let properties = Properties { one_to_one: true, ..Claims::LAWFUL.properties };
+        let claims = Claims { properties, ..Claims::LAWFUL };
+        UnderTest::of_probe(name, WarpProbe { sample, pdf, single }, claims)
     };
     [
-        subject(
+        warp(
             "cosine hemisphere",
             |u| promote(warp::sample_cosine_hemisphere(u.map(|u| u as f32))),
             |w| warp::pdf_cosine_hemisphere(demote(w)).widen(),
             true,
         ),
-        subject("cosine hemisphere", warp::sample_cosine_hemisphere, warp::pdf_cosine_hemisphere, false),
-        subject(
+        warp("cosine hemisphere", warp::sample_cosine_hemisphere, warp::pdf_cosine_hemisphere, false),
+        warp(
             "uniform sphere",
             |u| promote(warp::sample_uniform_sphere(u.map(|u| u as f32))),
             |_| warp::pdf_uniform_sphere::<f32>().widen(),
             true,
         ),
-        subject("uniform sphere", warp::sample_uniform_sphere, |_| warp::pdf_uniform_sphere(), false),
+        warp("uniform sphere", warp::sample_uniform_sphere, |_| warp::pdf_uniform_sphere(), false),
     ]
 }
 
 impl Probe for WarpProbe {
-    fn eval(&self, _wo: Dir, wi: Dir) -> Worth {
+    fn eval(&self, _wo: Dir, wi: Dir) -> BsdfValue {
         let pdf = (self.pdf)(wi);
-        Worth { f_cos: [pdf; 3], pdf }
+        BsdfValue { f_cos: [pdf; 3], pdf }
     }
     fn sample(&self, _wo: Dir, u: [f64; 3]) -> Draw {
         let wi = (self.sample)([u[1], u[2]]);

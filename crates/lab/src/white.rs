@@ -1,17 +1,18 @@
-//! The white furnace as a map: how much light a surface that absorbs nothing returns, over roughness and angle.
+//! The white furnace as a map: how much light a lobe that absorbs nothing returns, over roughness and angle.
 //!
-//! The surface is rebuilt with every reflectance 1 (and every width of microfacets, or the other number that says how rough
-//! it is, as the row of the map says), and its directional albedo measured by samples on a grid. Where the map is
+//! The lobe is rebuilt with every number that says how much is absorbed as its declaration says of a white one (`Quantity::white`), and
+//! those that say how rough it is as the row of the map says. Its directional albedo is measured by samples on a grid. Where the map is
 //! largest the albedo is integrated, and that number is judged.
 
-use crate::anatomy::{self, Rough};
 use crate::cells::Cells;
 use crate::finding::{Finding, Run};
-use crate::plots::mean_weight;
-use crate::probe::{Dir, Kind, Probe, SurfaceProbe};
+use crate::plots::{Axis, mean_weight};
+use crate::probe::{Dir, Kind, Probe};
 use crate::random::{Random, direction, seed_for};
-use crate::subject::Claims;
-use gonio_kernel::Surface;
+use crate::test_bsdf::{DynBsdf, Number};
+use crate::under_test::Claims;
+use gonio_kernel::Properties;
+use gonio_kernel::model::Role;
 use serde::Serialize;
 
 /// Directional albedos over angle and roughness.
@@ -50,24 +51,81 @@ fn cosines() -> Vec<f64> {
     (0..ANGLES).map(|i| (i as f64 + 0.5) / ANGLES as f64).collect()
 }
 
-/// Over roughness and angle, of a surface.
-pub(crate) fn of_surface(surface: &Surface<f32>) -> FurnaceMap {
-    let rough = roughness(surface);
-    let rows: Vec<f64> = rough.map_or_else(Vec::new, |rough| {
-        let (_, lo, hi, log) = rough.axis();
+/// What a map varies: all numbers of one role, from the values that plots show of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Varied {
+    /// The role of the numbers.
+    role: Role,
+    /// Their name and range.
+    pub(crate) axis: Axis,
+    /// A usual value.
+    pub(crate) typical: f64,
+}
+
+impl Varied {
+    /// The first number of any of these roles decides.
+    fn first(numbers: &[Number], is_one: impl Fn(Role) -> bool) -> Option<Self> {
+        let first = numbers.iter().map(|number| number.parameter).find(|p| is_one(p.quantity.role))?;
+        let quantity = first.quantity;
+        let role = quantity.role;
+        let alike = numbers.iter().filter(|number| number.is(role)).map(|number| number.parameter.key);
+        let word = if alike.clone().all(|key| key == first.key) { None } else { word(role) };
+        let [lo, hi] = quantity.shown;
+        let axis = Axis { name: word.unwrap_or(first.key), lo, hi, log: quantity.log_from.is_some() };
+        Some(Self { role, axis, typical: quantity.typical })
+    }
+    /// How rough it is, if it says so.
+    pub(crate) fn roughness(numbers: &[Number]) -> Option<Self> {
+        Self::first(numbers, |role| matches!(role, Role::Alpha | Role::Roughness | Role::Exponent))
+    }
+    /// How rough it is, else what else it says.
+    pub(crate) fn any(numbers: &[Number]) -> Option<Self> {
+        let other = || Self::first(numbers, |role| role != Role::Weight);
+        Self::roughness(numbers).or_else(other)
+    }
+    /// All numbers, those that are varied set to x.
+    pub(crate) fn set(&self, numbers: &[Number], x: f64) -> Vec<f64> {
+        numbers.iter().map(|n| if n.is(self.role) { x } else { f64::from(n.value) }).collect()
+    }
+}
+
+/// What numbers of a role are called together.
+fn word(role: Role) -> Option<&'static str> {
+    match role {
+        Role::Reflectance => Some("reflectance"),
+        Role::Roughness => Some("roughness"),
+        Role::Alpha => Some("alpha"),
+        Role::Exponent => Some("exponent"),
+        Role::Index => Some("index"),
+        _ => None,
+    }
+}
+
+/// The numbers of the white twin, as rough as given.
+pub(crate) fn white(numbers: &[Number], varied: Option<(&Varied, f64)>) -> Vec<f64> {
+    let varies = |number: &Number| varied.filter(|(varied, _)| number.is(varied.role)).map(|(_, x)| x);
+    let value = |n: &Number| n.parameter.quantity.white.or_else(|| varies(n)).unwrap_or(f64::from(n.value));
+    numbers.iter().map(value).collect()
+}
+
+/// Over roughness and angle.
+pub(crate) fn map(bsdf: &dyn DynBsdf) -> FurnaceMap {
+    let numbers = bsdf.numbers();
+    let varied = Varied::roughness(&numbers);
+    let rows: Vec<f64> = varied.as_ref().map_or_else(Vec::new, |Varied { axis: Axis { lo, hi, log, .. }, .. }| {
         let share = |i: usize| i as f64 / (ROWS - 1) as f64;
-        (0..ROWS).map(|i| if log { lo * (hi / lo).powf(share(i)) } else { lo + (hi - lo) * share(i) }).collect()
+        (0..ROWS).map(|i| if *log { lo * (hi / lo).powf(share(i)) } else { lo + (hi - lo) * share(i) }).collect()
     });
     let cosines = cosines();
     let line = |value: Option<f64>| {
-        let probe = SurfaceProbe::new(white(surface, value), None);
-        cosines.iter().map(|&cos| mean_weight(&probe, direction(cos, AZIMUTH))).collect()
+        let probe = bsdf.double_probe(&white(&numbers, varied.as_ref().zip(value)));
+        cosines.iter().map(|&cos| mean_weight(probe.as_ref(), direction(cos, AZIMUTH))).collect()
     };
     let albedo = if rows.is_empty() { vec![line(None)] } else { rows.iter().map(|&x| line(Some(x))).collect() };
-    FurnaceMap { varied: rough.map(|rough| rough.axis().0), rows, cosines, albedo, white: true }
+    FurnaceMap { varied: varied.map(|varied| varied.axis.name), rows, cosines, albedo, white: true }
 }
 
-/// Over the angle alone, of a model as it is.
+/// Over the angle alone, of a lobe as it is.
 pub(crate) fn of_probe(probe: &dyn Probe) -> FurnaceMap {
     let cosines = cosines();
     let at = |&cos: &f64| mean_weight(probe, probe.snap(direction(cos, AZIMUTH)));
@@ -75,36 +133,23 @@ pub(crate) fn of_probe(probe: &dyn Probe) -> FurnaceMap {
     FurnaceMap { varied: None, rows: Vec::new(), cosines, albedo, white: false }
 }
 
-/// The first number of the surface that says how rough it is decides what the rows mean.
-pub(crate) fn roughness(surface: &Surface<f32>) -> Option<Rough> {
-    anatomy::dials(surface).iter().find_map(|(dial, _)| dial.rough)
-}
-
-/// The surface without absorption, as rough as given.
-pub(crate) fn white(surface: &Surface<f32>, roughness: Option<f64>) -> Surface<f64> {
-    let varied = self::roughness(surface);
-    anatomy::rebuilt(surface, |dial, x| match (dial.white, dial.rough) {
-        (Some(white), _) => f64::from(white),
-        (None, Some(rough)) if Some(rough) == varied => roughness.unwrap_or(f64::from(x)),
-        _ => f64::from(x),
-    })
-}
-
-/// The largest albedo of the surface's map, integrated.
-pub(crate) fn measure(surface: &Surface<f32>, map: &FurnaceMap, claims: Claims, run: &Run) -> Finding {
-    let properties = claims.properties;
-    let mut finding = match properties.conserving {
+/// The largest albedo of the lobe's map, integrated.
+pub(crate) fn measure(bsdf: &dyn DynBsdf, map: &FurnaceMap, claims: Claims, run: &Run) -> Finding {
+    let Properties { conserving, excess, .. } = claims.properties;
+    let mut finding = match conserving {
         true => Finding::at_most(1.0, "white: excess over 1 in units of quadrature error and what the model admits ≤"),
         false => Finding::at_least(1.0, "white, gains energy by design: excess over 1 in units of quadrature error ≥"),
     };
     let (sampled, row, column) = map.largest();
     let value = map.rows.get(row).copied();
     let cos = map.cosines[column];
-    let probe = SurfaceProbe::new(white(surface, value), None);
+    let numbers = bsdf.numbers();
+    let varied = Varied::roughness(&numbers);
+    let probe = bsdf.double_probe(&white(&numbers, varied.as_ref().zip(value)));
     let wo = direction(cos, AZIMUTH);
-    let (albedo, error) = integral(&probe, wo, run);
-    // The white of a conductor's index reflects 4e-8 less than all; integration of what is all discrete has only rounding.
-    let unit = error + f64::from(properties.excess) + 1e-7;
+    let (albedo, error) = integral(probe.as_ref(), wo, run);
+    // The white of a conductor's index reflects 4e-8 less than all; integration of what is all delta has only rounding.
+    let unit = error + f64::from(excess) + 1e-7;
     let place = match (map.varied, value) {
         (Some(name), Some(value)) => format!("{name} {value:.3e}, cosθ {cos:.3}"),
         _ => format!("cosθ {cos:.3}"),
@@ -115,18 +160,18 @@ pub(crate) fn measure(surface: &Surface<f32>, map: &FurnaceMap, claims: Claims, 
     finding
 }
 
-/// The green albedo with its error: all of a white surface's channels are equal.
-fn integral(probe: &SurfaceProbe<f64>, wo: Dir, run: &Run) -> (f64, f64) {
+/// The green albedo with its error: all of a white lobe's channels are equal.
+fn integral(probe: &dyn Probe, wo: Dir, run: &Run) -> (f64, f64) {
     let cells = Cells::following(probe, wo, &mut Random::new(seed_for(0, "white")));
     let total = Cells::total(&cells.integrate(probe, wo));
     let mut random = run.random();
-    let mut discrete: Vec<((u32, bool), f64)> = Vec::new();
+    let mut delta: Vec<((u32, bool), f64)> = Vec::new();
     for _ in 0..1000 {
-        if let Kind::Discrete(worth, label) = probe.sample(wo, random.sampler_input(false)).kind
-            && discrete.iter().all(|(seen, _)| *seen != label)
+        if let Kind::Delta(value, label) = probe.sample(wo, random.sampler_input(false)).kind
+            && delta.iter().all(|(seen, _)| *seen != label)
         {
-            discrete.push((label, worth.f_cos[1]));
+            delta.push((label, value.f_cos[1]));
         }
     }
-    (total.value[1] + discrete.iter().map(|d| d.1).sum::<f64>(), total.error)
+    (total.value[1] + delta.iter().map(|d| d.1).sum::<f64>(), total.error)
 }

@@ -97,7 +97,7 @@ impl<R: Real> Lobe<R> for Dielectric<R> {
 
     #[inline(always)]
     fn properties(&self) -> Properties<R> {
-        Properties { has_delta: true, all_delta: true, transmits: true, ..Properties::LAWFUL }
+        Properties { has_delta: true, all_delta: true, transmits: true, symmetric: true, ..Properties::LAWFUL }
     }
 
     #[inline(always)]

@@ -259,6 +259,7 @@ impl<R: Real> Lobe<R> for Eon<R> {
             albedo: known.then_some(self.albedo),
             // The closed form holds for unit directions, and those of f32 are unit to its precision only.
             albedo_error: 1e-7,
+            symmetric: true,
             ..Properties::LAWFUL
         }
     }

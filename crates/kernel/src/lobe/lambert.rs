@@ -61,7 +61,7 @@ impl<R: Real> Lobe<R> for Lambert<R> {
 
     #[inline(always)]
     fn properties(&self) -> Properties<R> {
-        Properties { one_to_one: true, albedo: Some(self.albedo), ..Properties::LAWFUL }
+        Properties { one_to_one: true, symmetric: true, albedo: Some(self.albedo), ..Properties::LAWFUL }
     }
 
     #[inline(always)]

@@ -59,7 +59,13 @@ impl<R: Real> Lobe<R> for Mirror<R> {
 
     #[inline(always)]
     fn properties(&self) -> Properties<R> {
-        Properties { has_delta: true, all_delta: true, albedo: Some(self.reflectance), ..Properties::LAWFUL }
+        Properties {
+            has_delta: true,
+            all_delta: true,
+            symmetric: true,
+            albedo: Some(self.reflectance),
+            ..Properties::LAWFUL
+        }
     }
 
     #[inline(always)]

@@ -123,7 +123,8 @@ impl<R: Real> Lobe<R> for Phong<R> {
     #[inline(always)]
     fn properties(&self) -> Properties<R> {
         let is_black = |k: Rgb<R>| k.largest().same(R::ZERO).all();
-        Properties { one_to_one: is_black(self.diffuse) || is_black(self.glossy), ..Properties::LAWFUL }
+        let one_to_one = is_black(self.diffuse) || is_black(self.glossy);
+        Properties { one_to_one, symmetric: true, ..Properties::LAWFUL }
     }
 
     #[inline(always)]

@@ -188,7 +188,6 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
     fn properties(&self) -> Properties<R> {
         Properties {
             transmits: true,
-            symmetric: false,
             has_delta: self.is_nothing().any(),
             all_delta: self.is_nothing().all(),
             anisotropic: !self.microfacets.is_isotropic().all(),

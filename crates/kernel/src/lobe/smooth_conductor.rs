@@ -77,7 +77,7 @@ impl<R: Real> Lobe<R> for SmoothConductor<R> {
 
     #[inline(always)]
     fn properties(&self) -> Properties<R> {
-        Properties { has_delta: true, all_delta: true, ..Properties::LAWFUL }
+        Properties { has_delta: true, all_delta: true, symmetric: true, ..Properties::LAWFUL }
     }
 
     #[inline(always)]

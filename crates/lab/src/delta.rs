@@ -4,10 +4,10 @@
 use crate::directions::{partner, show};
 use crate::finding::{Finding, Run};
 use crate::probe::{Dir, Kind};
-use crate::subject::View;
+use crate::under_test::View;
 use gonio_kernel::Vec3;
 
-/// The largest departure from the law; only for subjects that are purely discrete.
+/// The largest departure from the law; only for lobes that are all delta.
 pub(crate) fn measure(view: View, run: &Run) -> Finding {
     let mut random = run.random();
     let mut finding = Finding::at_most(4.0 * view.probe.epsilon(), "max |wi − mirrored wo|, |weight − R| ≤");
@@ -17,18 +17,18 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
         let wi = view.probe.snap(partner(&mut random, wo));
         let mirrored = n * (2.0 * n.dot(wo)) - wo;
         for wi in [wi, mirrored] {
-            let worth = view.probe.eval(wo, wi);
-            if worth.numbers() != [0.0; 4] {
-                finding.broken(|| format!("a density over directions: {worth:?}, wo {}, wi {}", show(wo), show(wi)));
+            let value = view.probe.eval(wo, wi);
+            if value.numbers() != [0.0; 4] {
+                finding.broken(|| format!("a density over directions: {value:?}, wo {}, wi {}", show(wo), show(wi)));
             }
         }
         let draw = view.probe.sample(wo, random.sampler_input(view.probe.single()));
-        let Kind::Discrete(worth, _) = draw.kind else {
+        let Kind::Delta(value, _) = draw.kind else {
             finding.broken(|| format!("sampled {:?} at wo {}", draw.kind, show(wo)));
             continue;
         };
         if draw.transmitted {
-            let eta = view.probe.compression(wo).sqrt();
+            let eta = view.probe.radiance_scale(wo).sqrt();
             let refracted = refracted(wo, eta);
             // One ulp of the sine is η of them on the other side, and more the closer that is to grazing.
             let ill = (1.0 / eta).max(1.0).powi(2) / refracted.z.abs().max(view.probe.epsilon().sqrt());
@@ -36,17 +36,18 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
             continue;
         }
         finding.raise((draw.wi - mirrored).length(), || format!("wi {} for wo {}", show(draw.wi), show(wo)));
-        // One event of strength R and probability 1 where the albedo is that of a single mirror.
-        if let (Some(albedo), true) = (view.claims.albedo, view.claims.one_event) {
-            finding.raise((worth.pdf - 1.0).abs(), || format!("probability {} at wo {}", worth.pdf, show(wo)));
-            for (weight, known) in worth.weight().into_iter().zip(albedo) {
+        // A single mirror reflects with probability 1, and weighs its albedo where that is known.
+        if view.claims.one_event {
+            finding.raise((value.pdf - 1.0).abs(), || format!("probability {} at wo {}", value.pdf, show(wo)));
+            let known = view.claims.properties.albedo.map(<[f64; 3]>::from);
+            for (weight, known) in value.weight().into_iter().zip(known.into_iter().flatten()) {
                 finding
                     .raise((weight - known).abs(), || format!("weight {weight} instead of {known} at wo {}", show(wo)));
             }
         }
         // From below there is nothing.
         let below = view.probe.sample(-wo, random.sampler_input(view.probe.single()));
-        if below.kind != Kind::Failed && !view.claims.transmits {
+        if below.kind != Kind::Failed && !view.claims.properties.transmits {
             finding.broken(|| format!("reflects from below: {:?} at wo {}", below.kind, show(-wo)));
         }
     }
