@@ -6,11 +6,11 @@ use gonio_accel::{Intersect, Obvhs, ObvhsOptions, Sharing};
 use gonio_kernel::Rgb;
 use gonio_kernel::energy::Compensation;
 use gonio_kernel::fresnel::Fresnel;
-use gonio_kernel::lobe::{AnyLobe, Conductor, Dielectric, Lambert, Mirror, RoughDielectric};
+use gonio_kernel::lobe::{AnyLobe, Coating, Conductor, Dielectric, Lambert, Layer, Layering, Mirror, RoughDielectric};
 use gonio_kernel::microfacet::Ggx;
 use gonio_tracer::image::Picture;
-use gonio_tracer::scene::{Environment, LobeSpec, Scene, Sky, SkyMap};
-use gonio_tracer::{Backend, Crop, Plan, RenderSettings, Rendering, Techniques, World, render};
+use gonio_tracer::scene::{Environment, LobeSpec, Material, Scene, Sky, SkyMap};
+use gonio_tracer::{Backend, Crop, CustomLobe, Plan, RenderSettings, Rendering, Techniques, World, render};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -341,4 +341,52 @@ fn a_sample_that_is_dropped_is_counted() {
     assert_eq!(rendering.stats.samples, 16 * 16 * 4);
     assert!(rendering.stats.lanes_full > 0.9, "{}", rendering.stats.lanes_full);
     assert!(rendering.stats.largest.is_sorted_by(|a, b| a.value >= b.value));
+}
+
+/// The shipped white furnace with a coat over a diffuse base.
+fn plastic(ior: f32, alpha: f32, base: f32, layering: Layering) -> Scene {
+    let mut scene = furnace_of(Lambert::new(Rgb::splat(base)));
+    for material in &mut scene.materials {
+        material.lobes.insert(0, LobeSpec::new(Coating::new(ior, alpha).lobe()).as_coat(layering));
+    }
+    scene
+}
+
+#[test]
+fn white_plastic_under_a_white_sky_cannot_be_seen_and_never_shines() {
+    // The object is convex: all that it scatters leaves. By either technique alone, so that light is found from both ends.
+    for (ior, alpha, lost) in [(1.5, 0.0, 3e-3), (1.5, 0.09, 1e-3), (1.5, 0.5, 1e-3), (2.0, 0.01, 3e-3)] {
+        for techniques in [Techniques::Both, Techniques::Lights, Techniques::Scattering] {
+            // Mirrors see the sky by scattering alone.
+            if alpha == 0.0 && techniques == Techniques::Lights {
+                continue;
+            }
+            let scene = plastic(ior, alpha, 1.0, Layering::Reciprocal);
+            let rendering = rendered(&scene, Backend::Obvhs, |s| s.techniques = techniques);
+            let [r, g, b] = mean(&rendering);
+            // 65,536 paths on an eighth of the picture, whose weights spread by a half: four standard errors are 1e-3.
+            let wrong = |m: &f64| *m > 1.0 + 1e-4 + 1e-3 || *m < 1.0 - lost - 1e-3;
+            assert!(![r, g, b].iter().any(wrong), "{ior} {alpha} {techniques:?}: {r} {g} {b}");
+        }
+    }
+}
+
+#[test]
+fn a_lobe_of_ones_own_renders_as_the_same_lobe_of_a_file() {
+    let chalk = Lambert::new(Rgb::new(0.8, 0.5, 0.2));
+    let from_file = furnace_of(chalk);
+    let mut own = from_file.clone();
+    for material in &mut own.materials {
+        *material = Material::of_lobe("own", CustomLobe::new(chalk));
+    }
+    let (a, b) = (rendered(&from_file, Backend::Obvhs, |_| ()), rendered(&own, Backend::Obvhs, |_| ()));
+    assert_eq!(a.stats.film_hash, b.stats.film_hash);
+    // A layer, which no single lobe of the kernel is.
+    let coat = Conductor::new(Ggx::isotropic(0.2), Fresnel::Dielectric { eta: 1.5 });
+    let layer = Layer::new(coat, Lambert::new(Rgb::splat(1.0)), Layering::Reciprocal).expect("a coat");
+    for material in &mut own.materials {
+        *material = Material::of_lobe("own", CustomLobe::new(layer));
+    }
+    let [r, ..] = mean(&rendered(&own, Backend::Obvhs, |_| ()));
+    assert!((r - 1.0).abs() < 2e-3, "{r}");
 }

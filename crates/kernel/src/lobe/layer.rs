@@ -19,7 +19,7 @@
 //! A part is chosen in proportion to E and to what the base returns through the top. Cost of a value beside those of both lobes: one
 //! division and about ten fused operations for a colourless top.
 
-use super::mix::{Prepared, share};
+use super::mix::{Prepared, shares};
 use super::{Lobe, Properties, Sample, Transport, Value};
 use crate::energy::AlbedoCurve;
 use crate::model::{Entry, Parameter, Parameters, Source};
@@ -176,7 +176,7 @@ impl<R: Real, T: Lobe<R>, B: Lobe<R>> Lobe<R> for Layer<R, T, B> {
     #[inline(always)]
     fn prepare(&self, wo: Vec3<R>, transport: Transport) -> Self::Prepared {
         let transmitted = self.coat.transmitted(wo);
-        let p = share(self.coat.albedo(wo), self.base.albedo_estimate(wo) * transmitted);
+        let p = shares(self.coat.albedo(wo), self.base.albedo_estimate(wo) * transmitted);
         let parts = Prepared { p, a: self.top.prepare(wo, transport), b: self.base.prepare(wo, transport) };
         Layered { parts, transmitted }
     }
@@ -212,7 +212,7 @@ impl<R: Real, T: Lobe<R>, B: Lobe<R>> Lobe<R> for Layer<R, T, B> {
     #[inline(always)]
     fn largest_weight(&self, wo: Vec3<R>) -> R {
         let transmitted = self.coat.transmitted(wo);
-        let p = share(self.coat.albedo(wo), self.base.albedo_estimate(wo) * transmitted);
+        let p = shares(self.coat.albedo(wo), self.base.albedo_estimate(wo) * transmitted);
         let attenuation = self.coat.largest_attenuation(transmitted, self.base.is_lambertian()).largest();
         Prepared { p, a: (), b: () }
             .largest_weight(self.top.largest_weight(wo), self.base.largest_weight(wo) * attenuation)

@@ -24,8 +24,8 @@ pub struct Mix<A, B>(pub A, pub B);
 /// What a [`Mix`] prepares.
 #[derive(Clone, Copy, Debug)]
 pub struct Prepared<R, A, B> {
-    /// The probability of the first part.
-    pub(super) p: R,
+    /// The probability of either part. Both are kept: 1 − p would lose the digits of a part that is nearly absent.
+    pub(super) p: [R; 2],
     pub(super) a: A,
     pub(super) b: B,
 }
@@ -35,6 +35,12 @@ pub struct Prepared<R, A, B> {
 pub(crate) fn share<R: Real>(a: Rgb<R>, b: Rgb<R>) -> R {
     let (a, b) = (a.luminance(), b.luminance());
     (a / (a + b)).or_zero((a + b).gt(R::ZERO))
+}
+
+/// The shares of two albedos.
+#[inline(always)]
+pub(super) fn shares<R: Real>(a: Rgb<R>, b: Rgb<R>) -> [R; 2] {
+    [share(a, b), share(b, a)]
 }
 
 /// What is left of u₀ inside the interval of length p from `below`: uniform again, and below 1 even after rounding.
@@ -47,7 +53,7 @@ pub(crate) fn rest_of<R: Real>(u: R, below: R, p: R) -> R {
 impl<R: Real, PA, PB> Prepared<R, PA, PB> {
     #[inline(always)]
     pub(super) fn pdf(&self, a: R, b: R) -> R {
-        self.p.mul_add(a, (R::ONE - self.p) * b)
+        self.p[0].mul_add(a, self.p[1] * b)
     }
 
     #[inline(always)]
@@ -56,8 +62,10 @@ impl<R: Real, PA, PB> Prepared<R, PA, PB> {
         A: Lobe<R, Prepared = PA>,
         B: Lobe<R, Prepared = PB>,
     {
-        let first = u[0].lt(self.p);
-        let (below, p) = (R::select(first, R::ZERO, self.p), R::select(first, self.p, R::ONE - self.p));
+        let [p, q] = self.p;
+        // Where rounding leaves a gap below 1, it is the first's if the second is absent.
+        let first = u[0].lt(p) | q.same(R::ZERO);
+        let (below, p) = (R::select(first, R::ZERO, p), R::select(first, p, q));
         let u = [rest_of(u[0], below, p), u[1], u[2]];
         let mut chosen = Sample::nothing();
         if first.any() {
@@ -85,7 +93,7 @@ impl<R: Real, PA, PB> Prepared<R, PA, PB> {
     #[inline(always)]
     pub(super) fn largest_weight(&self, a: R, b: R) -> R {
         let over = |weight: R, p: R| (weight / p).or_zero(p.gt(R::ZERO));
-        over(a, self.p).max(over(b, R::ONE - self.p))
+        over(a, self.p[0]).max(over(b, self.p[1]))
     }
 }
 
@@ -95,7 +103,7 @@ impl<R: Real, A: Lobe<R>, B: Lobe<R>> Lobe<R> for Mix<A, B> {
 
     #[inline(always)]
     fn prepare(&self, wo: Vec3<R>, transport: Transport) -> Self::Prepared {
-        let p = share(self.0.albedo_estimate(wo), self.1.albedo_estimate(wo));
+        let p = shares(self.0.albedo_estimate(wo), self.1.albedo_estimate(wo));
         Prepared { p, a: self.0.prepare(wo, transport), b: self.1.prepare(wo, transport) }
     }
     #[inline(always)]
@@ -126,7 +134,7 @@ impl<R: Real, A: Lobe<R>, B: Lobe<R>> Lobe<R> for Mix<A, B> {
     }
     #[inline(always)]
     fn largest_weight(&self, wo: Vec3<R>) -> R {
-        let p = share(self.0.albedo_estimate(wo), self.1.albedo_estimate(wo));
+        let p = shares(self.0.albedo_estimate(wo), self.1.albedo_estimate(wo));
         Prepared { p, a: (), b: () }.largest_weight(self.0.largest_weight(wo), self.1.largest_weight(wo))
     }
     #[inline(always)]

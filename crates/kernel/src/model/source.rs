@@ -50,7 +50,7 @@ pub trait Source<R: Real> {
     /// # Errors
     /// None of them is, or several are.
     fn way(&mut self, ways: &'static [&'static [Entry]]) -> Result<usize, Self::Error> {
-        let fits = |way: &&'static [Entry]| {
+        let fits = |way: &'static [Entry]| {
             let mut all = true;
             each_key(way, &mut |key| all &= self.has(key));
             let mut strangers = false;
@@ -63,7 +63,7 @@ pub trait Source<R: Real> {
             }
             all && !strangers
         };
-        match ways.iter().position(|way| fits(&way)) {
+        match ways.iter().copied().position(fits) {
             Some(way) => Ok(way),
             None => Err(self.refuse(Problem::OneOf(ways))),
         }
