@@ -65,11 +65,13 @@ macro_rules! for_each_lobe {
             dielectric::Dielectric,
             phong::Phong,
             eon::Eon,
+            ashikhmin_shirley::AshikhminShirley,
         }
     };
 }
 
 mod any;
+mod ashikhmin_shirley;
 mod coating;
 mod conductor;
 mod dielectric;
