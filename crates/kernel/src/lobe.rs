@@ -66,12 +66,14 @@ macro_rules! for_each_lobe {
             phong::Phong,
             eon::Eon,
             ashikhmin_shirley::AshikhminShirley,
+            blinn_phong::BlinnPhong,
         }
     };
 }
 
 mod any;
 mod ashikhmin_shirley;
+mod blinn_phong;
 mod coating;
 mod conductor;
 mod dielectric;
