@@ -63,7 +63,7 @@ pub trait Source<R: Real> {
             }
             all && !strangers
         };
-        match ways.iter().position(|way| fits(&way)) {
+        match ways.iter().position(fits) {
             Some(way) => Ok(way),
             None => Err(self.refuse(Problem::OneOf(ways))),
         }
