@@ -6,7 +6,7 @@
 //! angle: dω = dt dφ. Integration runs over s = √t (dω = 2s ds dφ), because sinθ = s√(2 − s²) is smooth at the pole.
 //! The pilot only places borders: cells need not be exactly equal for a test to be exact.
 
-use crate::probe::{Dir, Kind, Probe, BsdfValue};
+use crate::probe::{BsdfValue, Dir, Kind, Probe};
 use crate::quadrature::{Integral, integrate};
 use crate::random::Random;
 use gonio_kernel::Vec3;

@@ -60,11 +60,16 @@ fn measured(
             let precision = if single { "f32" } else { "f64" };
             let place = if number.lobe == 0 { String::new() } else { format!("lobe {} ", number.lobe + 1) };
             let ranges = &ranges;
-            tasks.push(Task::new("parameters", format!("{name} {place}{} {precision}", number.name()), 0, move |run| {
-                let (finding, range) = sweep::measure(bsdf, index, single, run);
-                ranges.lock().unwrap_or_else(|e| e.into_inner()).insert((index, !single), range);
-                finding
-            }));
+            tasks.push(Task::new(
+                "parameters",
+                format!("{name} {place}{} {precision}", number.name()),
+                0,
+                move |run| {
+                    let (finding, range) = sweep::measure(bsdf, index, single, run);
+                    ranges.lock().unwrap_or_else(|e| e.into_inner()).insert((index, !single), range);
+                    finding
+                },
+            ));
         }
     }
     let checks = run(tasks, options);

@@ -10,7 +10,7 @@ use crate::cells::{Cells, USUAL_BINS};
 use crate::check::Effort;
 use crate::directions::VIEWS;
 use crate::finding::{Finding, Run};
-use crate::probe::{Dir, Kind, BsdfValue};
+use crate::probe::{BsdfValue, Dir, Kind};
 use crate::random::Random;
 use crate::statistics::{FAULT_MASS, FAULT_SIZE, POWER, chi2_p, poisson_p, samples_for, size_found};
 use crate::under_test::{Prepared, View};

@@ -6,7 +6,7 @@
 
 use crate::catalog::{Row, rows};
 use crate::finding::{Finding, Run};
-use crate::probe::{Dir, Draw, Kind, Probe, BsdfValue, demote};
+use crate::probe::{BsdfValue, Dir, Draw, Kind, Probe, demote};
 use crate::random::direction;
 use crate::run::Task;
 use crate::statistics::{FAULT_MASS, FAULT_SIZE, samples_for};

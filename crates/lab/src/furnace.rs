@@ -6,7 +6,7 @@
 //! fitted model admits); and where the albedo is known exactly (white Lambert and mirror return everything) it must be that.
 
 use crate::finding::{Finding, Run};
-use crate::probe::{Dir, Kind, BsdfValue};
+use crate::probe::{BsdfValue, Dir, Kind};
 use crate::random::Random;
 use crate::statistics::bennett_p;
 use crate::under_test::{Prepared, View};

@@ -305,9 +305,7 @@ impl DynBsdf<'static> for Changed<'_> {
 fn around() -> [Task<'static>; 2] {
     let spoilt = |name, change: fn(&Number, f32) -> f32, measure: fn(&dyn DynBsdf, &Run) -> Finding| {
         planted(name, "totality", move |run| {
-            of_variant("conductor f0", run, |variant, run| {
-                measure(&Changed { base: &variant.surface(), change }, run)
-            })
+            of_variant("conductor f0", run, |variant, run| measure(&Changed { base: &variant.surface(), change }, run))
         })
     };
     [

@@ -154,13 +154,7 @@ fn rough_dielectric(l: &RoughDielectric<f64>, wo: Dir, wi: Dir) -> Option<BsdfVa
 type Part<'a> = &'a dyn Fn(f64) -> Option<([f64; 3], f64)>;
 
 /// Cook–Torrance: f = F D G₂ / (4 cosθ_o cosθ_i), all visible normals as density.
-fn reflection(
-    microfacets: &Microfacets<f64>,
-    masking: Masking,
-    wo: Dir,
-    wi: Dir,
-    part: Part,
-) -> Option<BsdfValue> {
+fn reflection(microfacets: &Microfacets<f64>, masking: Masking, wo: Dir, wi: Dir, part: Part) -> Option<BsdfValue> {
     let sum = [wo.x + wi.x, wo.y + wi.y, wo.z + wi.z];
     let length = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();
     let m = sum.map(|x| x / length);

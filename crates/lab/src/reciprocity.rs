@@ -30,7 +30,8 @@ pub(crate) fn measure(view: View, run: &Run) -> Finding {
         let through = if wo.z * wi.z < 0.0 { view.probe.radiance_scale(wo) } else { 1.0 };
         let there = view.probe.eval(wo, wi).f_cos;
         let back = view.probe.eval(wi, wo).f_cos.map(|f| f * through);
-        let moves = if view.claims.properties.symmetric { [0.0; 4] } else { sensitivity(view.reference, view.nudged, wo, wi) };
+        let moves =
+            if view.claims.properties.symmetric { [0.0; 4] } else { sensitivity(view.reference, view.nudged, wo, wi) };
         for c in 0..3 {
             // Denormal f32 results carry few bits: nothing to compare below.
             let floor = if view.probe.single() { 1e-30 } else { 1e-280 };

@@ -4,7 +4,7 @@
 //! weight 1. The triangle has its own χ², over 64 congruent triangles of expected share 1/64 each.
 
 use crate::finding::{Finding, Run};
-use crate::probe::{Dir, Draw, Kind, Probe, Scalar, BsdfValue, demote, promote};
+use crate::probe::{BsdfValue, Dir, Draw, Kind, Probe, Scalar, demote, promote};
 use crate::statistics::chi2_p;
 use crate::under_test::{Claims, UnderTest};
 use gonio_kernel::{Properties, warp};
@@ -22,7 +22,7 @@ pub(crate) struct WarpProbe {
 /// The warps of directions.
 pub(crate) fn under_test() -> [UnderTest<'static>; 4] {
     let warp = |name, sample, pdf, single| {
-        let properties = Properties { one_to_one: true, ..Claims::LAWFUL.properties };
+        let properties = Properties { one_to_one: true, ..Properties::LAWFUL };
         let claims = Claims { properties, ..Claims::LAWFUL };
         UnderTest::of_probe(name, WarpProbe { sample, pdf, single }, claims)
     };

@@ -6,7 +6,7 @@
 
 use crate::directions::show;
 use crate::finding::{Finding, Run};
-use crate::probe::{Dir, Kind, BsdfValue};
+use crate::probe::{BsdfValue, Dir, Kind};
 use crate::under_test::View;
 
 /// The largest ratio of weight to bound.

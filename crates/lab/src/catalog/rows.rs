@@ -85,16 +85,11 @@ fn mixed(name: &str, lobes: &[(f32, Any)]) -> Row {
     Row { name: name.to_owned(), surface, is_layered: false, except: &[] }
 }
 
-/// A row of one lobe over another. What a coat's albedo decides is not asked of it here: light that is kept or lost, and in the
-/// mode that is not reciprocal, how little.
+/// A row of one lobe over another.
 fn coated(name: &str, top: Any, base: Any, layering: Layering) -> Row {
     let surface = Surface::black().coat(1.0, top, layering);
     let surface = surface.and_then(|surface| surface.with(1.0, base)).unwrap_or_else(|error| panic!("{name}: {error}"));
-    let except: &[&str] = match layering {
-        Layering::Reciprocal => &["energy"],
-        _ => &["energy", "reciprocity"],
-    };
-    Row { name: name.to_owned(), surface, is_layered: true, except }
+    Row { name: name.to_owned(), surface, is_layered: true, except: &[] }
 }
 
 /// Every row: those worth a look, and each variant at usual values and at the ends of what plots show.
@@ -155,8 +150,7 @@ fn conductors() -> Vec<Row> {
     let pale = [0.9, 0.6, 0.3];
     let [eta, k] = GOLD;
     let f82 = lobe!("conductor", alpha_x = 0.3, alpha_y = 0.2, f0 = [0.9, 0.6, 0.4], f82 = [0.5, 0.8, 1.0]);
-    let separable =
-        lobe!("conductor", alpha_x = 0.6, alpha_y = 0.3, f0 = [0.9, 0.6, 0.4], masking = "separable");
+    let separable = lobe!("conductor", alpha_x = 0.6, alpha_y = 0.3, f0 = [0.9, 0.6, 0.4], masking = "separable");
     let gold_metal = lobe!("conductor", alpha = 0.3, eta = eta, k = k, compensation = "kulla-conty");
     rows.extend([
         row("conductor 1e-8x1e-8 white", schlick([1e-8, 1e-8], WHITE)),

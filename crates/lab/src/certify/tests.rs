@@ -23,7 +23,12 @@ fn surfaces_of_every_kind_get_their_certificate() {
     let f0 = Rgb::new(0.9_f32, 0.6, 0.3);
     let gold = Fresnel::Conductor { eta: Rgb::new(0.143, 0.375, 1.442), k: Rgb::new(3.983, 2.386, 1.603) };
     let matte = Lambert::new(Rgb::new(0.8, 0.5, 0.2));
-    let phong = Phong { diffuse: f0 * 0.5, glossy: f0 * 0.5, exponent: 50.0, normalization: PhongNormalization::LafortuneWillems };
+    let phong = Phong {
+        diffuse: f0 * 0.5,
+        glossy: f0 * 0.5,
+        exponent: 50.0,
+        normalization: PhongNormalization::LafortuneWillems,
+    };
     let surfaces = [
         Surface::of(matte),
         Surface::of(Conductor::new(ggx, gold)),

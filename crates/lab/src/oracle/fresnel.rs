@@ -5,9 +5,8 @@ use gonio_kernel::fresnel::Fresnel;
 
 /// The reflectance of each channel; none for a material that this file does not know.
 pub(super) fn reflectance(material: &Fresnel<f64>, cos: f64) -> Option<[f64; 3]> {
-    let by_channel = |a: Rgb<f64>, b: Rgb<f64>, f: fn(f64, f64, f64) -> f64| {
-        [f(cos, a.r, b.r), f(cos, a.g, b.g), f(cos, a.b, b.b)]
-    };
+    let by_channel =
+        |a: Rgb<f64>, b: Rgb<f64>, f: fn(f64, f64, f64) -> f64| [f(cos, a.r, b.r), f(cos, a.g, b.g), f(cos, a.b, b.b)];
     match *material {
         Fresnel::Conductor { eta, k } => Some(by_channel(eta, k, conductor)),
         Fresnel::Schlick { f0 } => Some(by_channel(f0, f0, |cos, f0, _| schlick(cos, f0))),
