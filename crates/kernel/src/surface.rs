@@ -411,8 +411,10 @@ impl<R: Real, L: Parameters<Real = R>, const N: usize, const C: usize> Parameter
         Surface::like(lobes, lanes[0].layerings())
     }
     fn same_code(&self, other: &Self) -> bool {
-        let count = self.lobes().count() == other.lobes().count();
-        count && self.layerings() == other.layerings() && self.lobes().zip(other.lobes()).all(|(a, b)| a.same_code(b))
+        let mut both = self.lobes().zip(other.lobes());
+        self.lobes().count() == other.lobes().count()
+            && self.layerings() == other.layerings()
+            && both.all(|(a, b)| a.same_code(b))
     }
     fn in_domain(&self) -> R::Mask {
         self.lobes().fold(R::Mask::splat(true), |ok, lobe| ok & lobe.in_domain())

@@ -400,7 +400,7 @@ fn go_on(
     if ctx.russian_roulette && depth + 1 >= ROULETTE_FROM {
         let q = throughput.luminance().min(F32x8::lit(ROULETTE_CAP));
         alive = alive & u_roulette.lt(q);
-        throughput = throughput * q.recip();
+        throughput *= q.recip();
     }
     if alive.any() {
         let lights = &ctx.world.lights;

@@ -134,13 +134,15 @@ fn optional<'d, T>(
     value.as_ref().map(read).transpose()
 }
 
+/// Which keys are multiplied by which image.
+type Textured = Vec<(&'static str, usize)>;
+
 /// The keys of a table as a source of parameters.
 struct Keys<'a, 'd, 'c> {
     table: &'a Table<'d>,
     context: &'a mut Context<'c>,
     model: &'d str,
-    /// Which keys are multiplied by which image.
-    textured: Vec<(&'static str, usize)>,
+    textured: Textured,
 }
 
 impl<'a, 'd, 'c> Keys<'a, 'd, 'c> {
@@ -148,7 +150,7 @@ impl<'a, 'd, 'c> Keys<'a, 'd, 'c> {
         Self { table, context, model: kind(table).unwrap_or_default(), textured: Vec::new() }
     }
 
-    fn read<P: Parameters<Real = f64>>(mut self) -> Result<(P, Vec<(&'static str, usize)>), SceneError> {
+    fn read<P: Parameters<Real = f64>>(mut self) -> Result<(P, Textured), SceneError> {
         // Every key of the model is known, whichever of its ways is given.
         each_key(P::ENTRIES, &mut |key| self.table.know(key));
         AnyLobe::<f64>::each_model(&mut |info| {
