@@ -1,8 +1,8 @@
 //! A check that cannot fail does not count: every instrument is tested on planted faults, and certificates on good and bad lobes.
 
 use gonio_kernel::warp::{pdf_cosine_hemisphere, pdf_uniform_sphere, sample_cosine_hemisphere, sample_uniform_sphere};
-use gonio_kernel::{Event, Lobe, Rgb, Sample, Value, Vec3};
-use gonio_lab::{Certificate, Check, Effort, Options, Outcome, certify, instruments, validate_kernel};
+use gonio_kernel::{Event, Lobe, Rgb, Sample, Transport, Value, Vec3};
+use gonio_lab::{Certificate, Check, Effort, Options, Outcome, certify_single, instruments, validate_kernel};
 
 fn checks(only: &str, seed: u64) -> Vec<Check> {
     let mut checks = Vec::new();
@@ -61,13 +61,18 @@ const UNIFORM: Mine = Mine {
 };
 
 impl Lobe<f32> for Mine {
-    fn eval(&self, wo: Vec3<f32>, wi: Vec3<f32>) -> Value<f32> {
+    type Prepared = ();
+    fn prepare(&self, _wo: Vec3<f32>, _transport: Transport) {}
+    fn eval(&self, wo: Vec3<f32>, _: &(), wi: Vec3<f32>) -> Value<f32> {
         let pdf = (self.density)(wi);
         let f_cos = Rgb::splat(self.scale) * pdf_cosine_hemisphere(wi);
         Value { f_cos, pdf }.or_zero(wo.z > 0.0 && wi.z > 0.0)
     }
-    fn sample(&self, wo: Vec3<f32>, u: [f32; 3]) -> Sample<f32> {
+    fn sample(&self, wo: Vec3<f32>, _: &(), u: [f32; 3]) -> Sample<f32> {
         Sample { wi: (self.draw)([u[1], u[2]]), event: Event::reflected(wo.z <= 0.0) }
+    }
+    fn delta(&self, _: Vec3<f32>, _: &(), _: &Sample<f32>) -> Value<f32> {
+        Value::zero()
     }
     fn albedo_estimate(&self, _wo: Vec3<f32>) -> Rgb<f32> {
         Rgb::splat(self.scale)
@@ -78,7 +83,7 @@ impl Lobe<f32> for Mine {
 }
 
 fn certificate(lobe: &Mine) -> Certificate {
-    certify("mine", lobe, &Options::new(Effort::Quick))
+    certify_single("mine", lobe, &Options::new(Effort::Quick))
 }
 
 fn failed_instruments(lobe: &Mine) -> Vec<String> {
