@@ -15,9 +15,7 @@ pub(crate) use source::Given;
 
 use crate::random::Random;
 use crate::test_bsdf::{DynBsdf, Number};
-use gonio_kernel::lobe::{
-    AnyLobe, Conductor, Dielectric, Eon, Lambert, Mirror, Phong, RoughDielectric, SmoothConductor,
-};
+use gonio_kernel::lobe::AnyLobe;
 use gonio_kernel::model::Parameter;
 use gonio_kernel::{Lobe, Model, Parameters, Surface};
 use source::{EveryChoice, Keys};
@@ -42,7 +40,9 @@ impl Variant {
 pub(crate) fn variants() -> Vec<Variant> {
     let mut variants = Vec::new();
     macro_rules! every {
-        ($($file:ident::$model:ident),* $(,)?) => { $(variants.extend(variants_of::<$model<f32>>(stringify!($model)));)* };
+        ($($file:ident::$model:ident),* $(,)?) => {
+            $(variants.extend(variants_of::<gonio_kernel::lobe::$model<f32>>(stringify!($model)));)*
+        };
     }
     gonio_kernel::for_each_lobe!(every);
     variants
@@ -131,32 +131,44 @@ pub(crate) fn random_value(p: &Parameter, random: &mut Random) -> f32 {
 pub(crate) struct RandomValues<'a, 't> {
     bsdf: &'a dyn DynBsdf<'t>,
     numbers: Vec<Number>,
-    /// A rule over several numbers may be broken where each lies in its own domain.
-    has_rule: bool,
+    /// Of a lobe with a rule over several numbers, which may be broken where each lies in its own domain: what did obey it, of late.
+    lawful: Option<Vec<Vec<f32>>>,
+    next: usize,
 }
+
+/// How many are kept.
+const LAWFUL: usize = 4096;
 
 impl<'a, 't> RandomValues<'a, 't> {
     /// Of this lobe.
     pub(crate) fn new(bsdf: &'a dyn DynBsdf<'t>) -> Self {
         let numbers = bsdf.numbers();
+        let own = numbers.iter().map(|number| number.value).collect();
+        let mut values = Self { bsdf, numbers, lawful: None, next: 0 };
         let mut random = Random::new(0);
-        let mut all = || numbers.iter().map(|number| random_value(number.parameter, &mut random)).collect::<Vec<_>>();
-        let has_rule = (0..256).any(|_| !bsdf.domain_at(&all()));
-        Self { bsdf, numbers, has_rule }
+        if (0..256).any(|_| !bsdf.domain_at(&values.any(&mut random))) {
+            values.lawful = Some(vec![own]);
+            (0..LAWFUL).for_each(|_| drop(values.draw(&mut random)));
+        }
+        values
     }
 
-    /// Values in the order of its numbers. Where they break a rule, one after the other is drawn again until they do not.
-    pub(crate) fn draw(&self, random: &mut Random) -> Vec<f32> {
-        let mut values: Vec<f32> = self.numbers.iter().map(|n| random_value(n.parameter, random)).collect();
-        if self.has_rule {
-            for _ in 0..1000 {
-                if self.bsdf.domain_at(&values) {
-                    return values;
-                }
-                let index = (random.bits() % self.numbers.len() as u64) as usize;
-                values[index] = random_value(self.numbers[index].parameter, random);
-            }
-            return self.numbers.iter().map(|number| number.value).collect();
+    fn any(&self, random: &mut Random) -> Vec<f32> {
+        self.numbers.iter().map(|number| random_value(number.parameter, random)).collect()
+    }
+
+    /// Values in the order of its numbers. Where they break a rule, earlier ones that did not take their place.
+    pub(crate) fn draw(&mut self, random: &mut Random) -> Vec<f32> {
+        let values = self.any(random);
+        let Some(lawful) = &mut self.lawful else { return values };
+        if !self.bsdf.domain_at(&values) {
+            return lawful[(random.bits() % lawful.len() as u64) as usize].clone();
+        }
+        if lawful.len() < LAWFUL {
+            lawful.push(values.clone());
+        } else {
+            lawful[self.next % LAWFUL].clone_from(&values);
+            self.next += 1;
         }
         values
     }
@@ -206,7 +218,7 @@ mod tests {
         for variant in variants() {
             let surface = variant.surface();
             let (numbers, mut random) = (DynBsdf::numbers(&surface), Random::new(3));
-            let values = RandomValues::new(&surface);
+            let mut values = RandomValues::new(&surface);
             let all: Vec<Vec<f32>> = (0..500).map(|_| values.draw(&mut random)).collect();
             for (i, number) in numbers.iter().enumerate() {
                 let own = |end: f64| all.iter().any(|values| values[i] == end as f32);

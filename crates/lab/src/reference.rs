@@ -32,7 +32,7 @@ pub(crate) fn exists(variant: &Variant) -> bool {
 /// One variant at random parameters.
 pub(crate) fn measure(variant: &Variant, model: Model, run: &Run) -> Finding {
     let mut random = run.random();
-    let random_values = RandomValues::new(&variant.lobe);
+    let mut random_values = RandomValues::new(&variant.lobe);
     let transmits = variant.lobe.properties().transmits;
     let mut finding = Finding::at_most(LIMIT, "max |kernel − oracle| / oracle ≤");
     for _ in 0..run.by_effort(20_000, 300_000, 3_000_000) {

@@ -67,7 +67,7 @@ pub(crate) fn measure_inside(bsdf: &dyn DynBsdf, run: &Run) -> Finding {
     let mut first = String::new();
     // A quick run takes half as many pairs: a minute has no room for more of every variant.
     let rounds = run.by_effort(300_000, 1_250_000, 6_250_000);
-    let random_values = RandomValues::new(bsdf);
+    let mut random_values = RandomValues::new(bsdf);
     let mut lanes = vec![[0.0_f32; 8]; numbers.len()];
     for _ in 0..rounds {
         let questions: [Question; 8] = std::array::from_fn(|l| {
@@ -152,7 +152,7 @@ pub(crate) fn measure_special(bsdf: &dyn DynBsdf, run: &Run) -> Finding {
     let mut first = String::new();
     let count = numbers.len();
     let places = count + 6 + 3;
-    let random_values = RandomValues::new(bsdf);
+    let mut random_values = RandomValues::new(bsdf);
     // Every special number beside every other, in every two places.
     let two: Vec<(usize, usize)> = (0..places).flat_map(|b| (0..b).map(move |a| (a, b))).collect();
     let products = two.len() * SPECIAL.len() * SPECIAL.len();
