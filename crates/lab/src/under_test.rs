@@ -25,9 +25,8 @@ pub(crate) struct Claims {
 }
 
 impl Claims {
-    /// Nothing but the laws, and no more symmetry than rounding has by chance.
-    pub(crate) const LAWFUL: Self =
-        Self { properties: Properties { symmetric: false, ..Properties::LAWFUL }, one_event: false, empty: false };
+    /// Nothing but the laws.
+    pub(crate) const LAWFUL: Self = Self { properties: Properties::LAWFUL, one_event: false, empty: false };
 
     /// What a lobe says, and what its samples show of its delta events.
     fn of(properties: Properties<f64>, probe: &dyn Probe) -> Self {
@@ -220,13 +219,21 @@ pub(crate) fn least_alpha(numbers: &[Number]) -> Option<f32> {
 }
 
 /// The same claims, their albedo in `f64`.
-pub(crate) fn widened(properties: Properties<f32>) -> Properties<f64> {
-    let Properties { reciprocal, conserving, excess, units, has_delta, all_delta, anisotropic, .. } = properties;
-    let Properties { transmits, one_to_one, symmetric, albedo, albedo_error, .. } = properties;
-    let albedo = albedo.map(|albedo: Rgb<f32>| albedo.map(f64::from));
-    let mut wide = Properties::LAWFUL;
-    (wide.reciprocal, wide.conserving, wide.excess, wide.units) = (reciprocal, conserving, excess, units);
-    (wide.has_delta, wide.all_delta, wide.anisotropic, wide.transmits) = (has_delta, all_delta, anisotropic, transmits);
-    (wide.one_to_one, wide.symmetric, wide.albedo, wide.albedo_error) = (one_to_one, symmetric, albedo, albedo_error);
-    wide
+fn widened(properties: Properties<f32>) -> Properties<f64> {
+    let Properties { reciprocal, conserving, excess, units, has_delta, all_delta, .. } = properties;
+    let Properties { anisotropic, transmits, one_to_one, symmetric, albedo, albedo_error, .. } = properties;
+    Properties {
+        reciprocal,
+        conserving,
+        excess,
+        units,
+        has_delta,
+        all_delta,
+        anisotropic,
+        transmits,
+        one_to_one,
+        symmetric,
+        albedo: albedo.map(|albedo: Rgb<f32>| albedo.map(f64::from)),
+        albedo_error,
+    }
 }

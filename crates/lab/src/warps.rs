@@ -22,7 +22,7 @@ pub(crate) struct WarpProbe {
 /// The warps of directions.
 pub(crate) fn under_test() -> [UnderTest<'static>; 4] {
     let warp = |name, sample, pdf, single| {
-        let properties = Properties { one_to_one: true, ..Claims::LAWFUL.properties };
+        let properties = Properties { one_to_one: true, ..Properties::LAWFUL };
         let claims = Claims { properties, ..Claims::LAWFUL };
         UnderTest::of_probe(name, WarpProbe { sample, pdf, single }, claims)
     };
