@@ -85,16 +85,11 @@ fn mixed(name: &str, lobes: &[(f32, Any)]) -> Row {
     Row { name: name.to_owned(), surface, is_layered: false, except: &[] }
 }
 
-/// A row of one lobe over another. What a coat's albedo decides is not asked of it here: light that is kept or lost, and in the
-/// mode that is not reciprocal, how little.
+/// A row of one lobe over another.
 fn coated(name: &str, top: Any, base: Any, layering: Layering) -> Row {
     let surface = Surface::black().coat(1.0, top, layering);
     let surface = surface.and_then(|surface| surface.with(1.0, base)).unwrap_or_else(|error| panic!("{name}: {error}"));
-    let except: &[&str] = match layering {
-        Layering::Reciprocal => &["energy"],
-        _ => &["energy", "reciprocity"],
-    };
-    Row { name: name.to_owned(), surface, is_layered: true, except }
+    Row { name: name.to_owned(), surface, is_layered: true, except: &[] }
 }
 
 /// Every row: those worth a look, and each variant at usual values and at the ends of what plots show.
