@@ -81,12 +81,12 @@ impl Slab {
             let value = if sample.event.is_delta { at.delta(&sample) } else { at.eval(sample.wi) };
             let kept = value.f_cos.g / value.pdf;
             lost += weight.g * (1.0 - kept);
-            weight = weight * kept;
+            weight *= kept;
             if sample.wi.z > 0.0 {
                 return (weight, lost);
             }
             // Down to the base, and up again, cosine-distributed, whatever the direction was.
-            weight = weight * self.base;
+            weight *= self.base;
             let up = sample_cosine_hemisphere([random.uniform(), random.uniform()]);
             wo = -up;
         }
