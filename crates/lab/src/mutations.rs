@@ -276,6 +276,9 @@ impl DynBsdf<'static> for Changed<'_> {
     fn domain_at(&self, numbers: &[f32]) -> bool {
         self.base.domain_at(numbers)
     }
+    fn is_combination(&self) -> bool {
+        self.base.is_combination()
+    }
     fn properties_at(&self, numbers: &[f64]) -> Properties<f64> {
         self.base.properties_at(numbers)
     }

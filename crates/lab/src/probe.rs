@@ -83,6 +83,11 @@ pub(crate) trait Probe: Sync {
         1.0
     }
 
+    /// About how much of the light from wo is scattered, by its own account.
+    fn albedo_estimate(&self, _wo: Dir) -> f64 {
+        0.0
+    }
+
     /// Half a unit in the last place of 1.
     fn epsilon(&self) -> f64 {
         if self.single() { f64::from(f32::EPSILON) } else { f64::EPSILON }
@@ -176,6 +181,9 @@ impl<R: Scalar, L: Lobe<R> + Sync> Probe for LobeProbe<R, L> {
     }
     fn largest_weight(&self, wo: Dir) -> f64 {
         self.lobe.largest_weight(narrow(wo)).widen()
+    }
+    fn albedo_estimate(&self, wo: Dir) -> f64 {
+        self.lobe.albedo_estimate(narrow(wo)).largest().widen()
     }
 }
 

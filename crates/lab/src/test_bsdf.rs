@@ -128,6 +128,8 @@ pub(crate) trait DynBsdf<'t>: Sync {
     fn numbers(&self) -> Vec<Number>;
     /// Whether these numbers lie in its domain, as the kernel computes it.
     fn domain_at(&self, numbers: &[f32]) -> bool;
+    /// Whether it is a combination of lobes.
+    fn is_combination(&self) -> bool;
     /// What it claims of itself at these numbers.
     fn properties_at(&self, numbers: &[f64]) -> Properties<f64>;
     /// In `f32`, batches in lanes.
@@ -150,6 +152,9 @@ impl<'t, L: TestBsdf<'t>> DynBsdf<'t> for L {
     }
     fn domain_at(&self, numbers: &[f32]) -> bool {
         self.at(numbers).domain()
+    }
+    fn is_combination(&self) -> bool {
+        L::LOBES > 1
     }
     fn properties_at(&self, numbers: &[f64]) -> Properties<f64> {
         self.double_at(numbers).properties()

@@ -147,6 +147,10 @@ pub(crate) fn measure(bsdf: &dyn DynBsdf, map: &FurnaceMap, claims: Claims, run:
     let varied = Varied::roughness(&numbers);
     let probe = bsdf.double_probe(&white(&numbers, varied.as_ref().zip(value)));
     let wo = direction(cos, AZIMUTH);
+    if bsdf.is_combination() && probe.albedo_estimate(wo) > 1.001 {
+        // Lobes side by side conserve energy as long as their reflectances add up to 1 at most: these would not.
+        return Finding::not_run("its lobes side by side, each white, return more than all light by their own account");
+    }
     let (albedo, error) = integral(probe.as_ref(), wo, run);
     // The white of a conductor's index reflects 4e-8 less than all; integration of what is all delta has only rounding.
     let unit = error + f64::from(excess) + 1e-7;
