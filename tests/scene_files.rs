@@ -177,7 +177,7 @@ fn values_out_of_range_are_refused_with_their_line() {
         ),
         (
             "[materials.a]\ntype = \"glass\"",
-            "scene.toml:2: type \"glass\" is not possible here; known are \"diffuse\", \"eon\", \"mirror\", \"phong\", \"conductor\", \"dielectric\", \"mix\"",
+            "scene.toml:2: type \"glass\" is not possible here; known are \"diffuse\", \"mirror\", \"conductor\", \"smooth-conductor\", \"dielectric\", \"phong\", \"eon\", \"ashikhmin-shirley\", \"blinn-phong\", \"mix\", \"layered\"",
         ),
         (
             "[materials.a]\ntype = \"conductor\"\nf0 = 0.9\nroughness = 0.00001",

@@ -127,7 +127,7 @@ macro_rules! group {
                     let $this = &read;
                     let holds: R::Mask = $rule;
                     if !$crate::Mask::all(holds) {
-                        return Err(source.refuse($crate::model::Problem::Rule($text)));
+                        source.break_rule($text)?;
                     }
                 })*
                 Ok(read)

@@ -45,6 +45,14 @@ pub trait Source<R: Real> {
     /// The error for a problem with the parameters as a whole.
     fn refuse(&mut self, problem: Problem) -> Self::Error;
 
+    /// A rule over several parameters is broken; the sentence says which.
+    ///
+    /// # Errors
+    /// Unless the source wants the model all the same, to see what it does outside of its domain.
+    fn break_rule(&mut self, rule: &'static str) -> Result<(), Self::Error> {
+        Err(self.refuse(Problem::Rule(rule)))
+    }
+
     /// Which of several ways is given: the one whose keys are all there, and of whose rivals none is.
     ///
     /// # Errors

@@ -95,7 +95,7 @@ fn refusals_name_the_line_and_what_would_be_right() {
         (
             "type = \"mix\"\nlobes = [\n{ type = \"mix\" }]",
             "dir/brass.toml:3: type \"mix\" is not possible here; known are \"diffuse\", \"mirror\", \"conductor\", \"smooth-conductor\", \
-             \"dielectric\", \"phong\", \"eon\", \"mix\", \"layered\"",
+             \"dielectric\", \"phong\", \"eon\", \"ashikhmin-shirley\", \"blinn-phong\", \"mix\", \"layered\"",
         ),
         (
             "type = \"mix\"\nlobes = [\n{ type = \"mirror\",\n alpha = 1 }]",
