@@ -91,7 +91,7 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
         Prepared { s_o, reach, eta: relative_index(self.eta, wo), transport }
     }
 
-    #[inline]
+    #[inline(always)]
     fn eval(&self, wo: Vec3<R>, prepared: &Prepared<R>, wi: Vec3<R>) -> Value<R> {
         let Prepared { s_o, reach, eta, transport } = *prepared;
         let (wi, wo) = (turned(wo, wi), turned(wo, wo));
@@ -138,7 +138,7 @@ impl<R: Real> Lobe<R> for RoughDielectric<R> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, wo: Vec3<R>, prepared: &Prepared<R>, u: [R; 3]) -> Sample<R> {
         let Prepared { s_o, reach, eta, .. } = *prepared;
         let up = turned(wo, wo);
