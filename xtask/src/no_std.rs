@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn the_sources_call_for_every_lobe_and_number() {
         let expected = expected().unwrap();
-        for name in ["Conductor_eval_F32x8", "Mirror_discrete_f64", "sin_cos_turns_f32"] {
+        for name in ["Conductor_eval_F32x8", "Mirror_delta_f64", "sin_cos_turns_f32"] {
             assert!(expected.contains(name), "{name} is not among {expected:?}");
         }
         assert!(!expected.iter().any(|name| name.starts_with("AnyLobe")));
