@@ -4,6 +4,7 @@
 
 use crate::{colour, direction, some};
 use core::hint::black_box;
+use gonio_kernel::energy::albedo as curve;
 use gonio_kernel::fresnel::Interface;
 use gonio_kernel::microfacet::{Masking, Reach};
 use gonio_kernel::{F32x8, Mask, Mask8, Real, Rgb, Vec3, energy, frame, fresnel, math, microfacet, warp};
@@ -81,6 +82,8 @@ macro_rules! functions {
             energy::missing_avg(alpha: R) -> R;
             energy::albedo(cos: R, alpha: R) -> R;
             energy::albedo_avg(alpha: R) -> R;
+            curve::missing_factor(cos: R, alpha: R) -> R;
+            curve::eta_basis(eta: R) -> [R; curve::IN_ETA];
             energy::multiple_fresnel(f: R, again: R) -> R;
             energy::scattered_again(alpha: R, missing_o: R, missing_i: R, missing_avg: R) -> R;
             energy::kulla_conty(missing_o: R, missing_i: R, missing_avg: R, f_ms: R) -> R;

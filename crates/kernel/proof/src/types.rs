@@ -6,8 +6,8 @@ use gonio_kernel::lobe::{AnyLobe, Layering, Lobe};
 use gonio_kernel::surface::SurfaceError;
 use gonio_kernel::units::{Area, Flux, Radiance, SolidAngle};
 use gonio_kernel::{
-    BsdfSample, Closure, F32x8, Frame, Mask, Mask8, Parameters, Properties, Real, Rgb, Sample, Surface, Table, Transport, U32x8,
-    Value, Vec3, closure::Unguarded,
+    BsdfSample, Closure, F32x8, Frame, Mask, Mask8, Parameters, Properties, Real, Rgb, Sample, Surface, Table,
+    Transport, U32x8, Value, Vec3, closure::Unguarded,
 };
 
 macro_rules! types {

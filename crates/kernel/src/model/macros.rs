@@ -34,7 +34,7 @@ macro_rules! choice {
     };
 }
 
-/// A model: a struct of parameters with a name, its `type` in material files. See [`crate::model`].
+/// A model: a struct of parameters with a name, its `type` in material files. See [`mod@crate::model`].
 ///
 /// `= "name" with (key | key)` is a model that shares its name with another and is meant where one of these keys is given.
 /// `rule |it| condition => "sentence";` is what several parameters must obey together; `coat |it| curve;` behind the rules gives the
@@ -65,7 +65,7 @@ macro_rules! model {
     };
 }
 
-/// A set of parameters that several models share, as a struct. See [`crate::model`].
+/// A set of parameters that several models share, as a struct. See [`mod@crate::model`].
 #[macro_export]
 macro_rules! group {
     (
@@ -137,7 +137,7 @@ macro_rules! group {
 }
 
 /// Parameters that can be given in several ways, as an enum of them (each runs code of its own), or as one struct of numbers with
-/// other spellings. See [`crate::model`].
+/// other spellings. See [`mod@crate::model`].
 ///
 /// An enum's `or (key: Choice, "sentence") => expression;` makes a value from a word. A struct's `or (key: quantity, …) =>
 /// expression;` makes it from other numbers, and `or () => expression;` is its default.
