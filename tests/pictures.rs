@@ -284,9 +284,8 @@ fn ground_glass_returns_what_its_facets_do_not_lose() {
     let mut last = 1.0;
     for alpha in [0.05, 0.2, 0.5] {
         let model = RoughDielectric::new(Ggx::isotropic(alpha), 1.5);
-        let [both, scattering] = [Techniques::Both, Techniques::Scattering].map(|techniques| {
-            mean(&rendered(&furnace_of(model.clone()), Backend::Obvhs, |s| s.techniques = techniques))[1]
-        });
+        let [both, scattering] = [Techniques::Both, Techniques::Scattering]
+            .map(|techniques| mean(&rendered(&furnace_of(model), Backend::Obvhs, |s| s.techniques = techniques))[1]);
         assert!(both < last && both > 0.8 * last, "alpha {alpha}: {both} after {last}");
         // Both see the same samples of one seed; 1 % is ten standard errors.
         assert!((both - scattering).abs() < 0.01, "alpha {alpha}: {both} and {scattering}");

@@ -6,23 +6,24 @@
 //!   and lane *i* of a lane result equals the `f32` result bit for bit.
 //! - [`Vec3`], [`Rgb`] and [`Frame`] carry directions, colours and the change to the local frame, in which the shading
 //!   normal is `z`, the tangent `x` and the bitangent `y`.
-//! - A [`Lobe`] is one scattering model: it evaluates `f_cos` and `pdf`, samples `wi`, and weighs discrete events.
-//!   [`lobe::Lambert`], [`lobe::Eon`], [`lobe::Mirror`] and [`lobe::Conductor`] are lobes; a user's own type can be one.
-//! - A [`Surface`] is a short list of weighted lobes: resolved parameters, no textures.
-//! - A [`Closure`] is a surface seen from `wo`: the only mixture code, and the only guard against input outside the domain.
+//! - A [`Lobe`] is whatever scatters: it evaluates `f_cos` and `pdf`, samples `wi`, and weighs delta events. The models of the kernel
+//!   are lobes ([`lobe::Lambert`], [`lobe::Conductor`], …), and so are their combinations: [`lobe::Mix`], [`lobe::Layer`],
+//!   [`Surface`]. A user's own type can be one.
+//! - A [`Model`] is a lobe whose parameters are declared once ([`mod@model`]): keys in files, domains, defaults, an `f64` twin, lanes.
+//! - A [`Surface`] is a list of lobes, mixed and layered, whose number is known at run time only.
+//! - A [`Closure`] is a lobe seen from `wo`, and the only guard against input outside the domain.
 //!
 //! Directions are unit vectors that point away from the surface. `wo` (towards the viewer) comes first, random numbers
 //! `u` come last. There is no std, no allocation, no panic and no unsafe code in this crate.
 //!
 //! ```
-//! use gonio_kernel::{Closure, Rgb, Surface, Vec3, lobe::Lambert};
+//! use gonio_kernel::{Closure, Rgb, Vec3, lobe::Lambert};
 //!
-//! let surface = Surface::of(Lambert::new(Rgb::new(0.8_f32, 0.5, 0.2)));
-//! let closure = Closure::new(&surface, Vec3::new(0.0, 0.0, 1.0));
+//! let chalk = Lambert::new(Rgb::new(0.8_f32, 0.5, 0.2));
+//! let closure = Closure::new(chalk, Vec3::new(0.0, 0.0, 1.0));
 //! let sample = closure.sample([0.3, 0.6, 0.1]);
-//! let value = closure.eval(sample.wi);
-//! let weight = value.f_cos * (1.0 / value.pdf);
-//! assert!((weight.g - 0.5).abs() < 1e-6);
+//! assert!((sample.weight.g - 0.5).abs() < 1e-6);
+//! assert_eq!(sample.pdf, closure.eval(sample.wi).pdf);
 //! ```
 //!
 //! # Features

@@ -6,7 +6,7 @@ use gonio_tracer::MaterialSurface;
 /// A local direction.
 pub(super) type Direction = [f64; 3];
 
-/// What a pair of directions is worth.
+/// Value and density of a pair of directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Answer {
     /// f·|cos_i|, red, green and blue.
@@ -25,7 +25,7 @@ pub(super) enum Happening {
     Failed,
 }
 
-/// A sampled direction and its worth; all zeros if it failed.
+/// A sampled direction and its value; all zeros if it failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Drawn {
     pub(super) wi: Direction,

@@ -14,7 +14,7 @@ const COLUMNS: &[&str] =
 /// Sample a material.
 ///
 /// Writes one row per sample: wi, f_cos, pdf, weight = f_cos/pdf, and event, one of reflect, transmit, mirror (a discrete
-/// reflection), discrete-transmit, failed. For a discrete event pdf is its probability and f_cos its weight times that; a
+/// reflection), discrete-transmit, failed. For a delta event pdf is its probability and f_cos its weight times that; a
 /// failed sample is a row of zeros. Row i depends on the seed and i alone, and its random numbers are the same in every
 /// arithmetic.
 #[derive(clap::Args)]

@@ -1,7 +1,7 @@
 //! A smooth dielectric: clear glass or water. Light is reflected or refracted, each in one direction.
 //!
 //! Fresnel's F of it is reflected, 1 − F refracted along Snell's law, η_o sinθ_o = η_i sinθ_i; beyond the critical angle all
-//! of it is reflected (Born & Wolf, section 1.5). Purely discrete: `eval` is 0, 0. Energy is conserved exactly (for
+//! of it is reflected (Born & Wolf, section 1.5). All delta: `eval` is 0, 0. Energy is conserved exactly (for
 //! importance: transmitted radiance carries 1/η²); light takes the same way back. Sampled in proportion, so every weight is 1.
 //!
 //! Cost: five divisions and one root.

@@ -1,7 +1,7 @@
 //! The perfect mirror: all light from one direction leaves in one other, ω_o = 2n(n·ω_i) − ω_i, times a reflectance R.
 //!
 //! f = R δ(ω_i − mirrored ω_o)/|cosθ_i|; with the cosine of the scattering equation the weight is R. The lecture's mirror
-//! omits the 1/|cosθ|. Reciprocal; conserves energy for R ≤ 1. Purely discrete: `eval` is 0, 0.
+//! omits the 1/|cosθ|. Reciprocal; conserves energy for R ≤ 1. All delta: `eval` is 0, 0.
 
 use super::{Event, Lobe, Properties, Sample, Transport, Value};
 use crate::energy::AlbedoCurve;
@@ -100,8 +100,8 @@ mod tests {
             let w = random.above();
             let sample = mirror.draw(w, [0.0; 3]);
             assert_eq!(sample.wi, n * (2.0 * n.dot(w)) - w);
-            let worth = mirror.delta_of(w, &sample);
-            assert_eq!((worth.f_cos, worth.pdf), (mirror.reflectance, 1.0));
+            let value = mirror.delta_of(w, &sample);
+            assert_eq!((value.f_cos, value.pdf), (mirror.reflectance, 1.0));
             assert_eq!(mirror.value(w, sample.wi).pdf, 0.0);
         }
     }

@@ -13,7 +13,7 @@
 //! to F, so weights never exceed 1; samples that leave on the wrong side fail.
 //!
 //! **Nearly equal indices.** As η → 1 refraction narrows to a line straight on, whatever the roughness. Within 10⁻³ of 1
-//! it is that line: all light passes as one discrete event. (It would turn by at most 0.06°, and reflect 2.5·10⁻⁷.)
+//! it is that line: all light passes as one delta event. (It would turn by at most 0.06°, and reflect 2.5·10⁻⁷.)
 //!
 //! Cost of a value with GGX: ten divisions and three roots.
 
