@@ -1,6 +1,5 @@
 use super::*;
-use crate::lanes::F32x8;
-use crate::testing::{Random, close, same_bits, special_values};
+use crate::testing::{Random, close, special_values};
 
 /// 2∫E µ dµ of what the curve returns, by Gauss's two points in 4000 intervals of √µ.
 fn avg(curve: &AlbedoCurve<f64>) -> Rgb<f64> {
@@ -130,7 +129,9 @@ fn every_number_gives_an_albedo() {
 }
 
 #[test]
+#[cfg(feature = "wide")]
 fn lanes_are_the_scalar_bit_for_bit() {
+    use crate::{F32x8, testing::same_bits};
     let mut random = Random(83);
     for round in 0..200 {
         let mut four = || core::array::from_fn::<f32, 8, _>(|_| random.unit());
