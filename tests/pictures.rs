@@ -386,6 +386,19 @@ fn a_lobe_of_ones_own_renders_as_the_same_lobe_of_a_file() {
     }
     let (a, b) = (rendered(&from_file, Backend::Obvhs, |_| ()), rendered(&own, Backend::Obvhs, |_| ()));
     assert_eq!(a.stats.film_hash, b.stats.film_hash);
+    // Two materials may share a lobe, and differ in all else.
+    let shared = CustomLobe::new(chalk);
+    for (i, material) in own.materials.iter_mut().enumerate() {
+        *material = Material { emission: Rgb::splat(0.0), ..Material::of_lobe("own", shared.clone()) };
+        material.two_sided = i % 2 == 0;
+    }
+    own.materials.push(Material { two_sided: false, ..Material::of_lobe("other", shared) });
+    let other = own.materials.len() as u32 - 1;
+    for mesh in &mut own.meshes {
+        mesh.materials.iter_mut().step_by(2).for_each(|m| *m = other);
+    }
+    let c = rendered(&own, Backend::Obvhs, |_| ());
+    assert_eq!(a.stats.film_hash, c.stats.film_hash);
     // A layer, which no single lobe of the kernel is.
     let coat = Conductor::new(Ggx::isotropic(0.2), Fresnel::Dielectric { eta: 1.5 });
     let layer = Layer::new(coat, Lambert::new(Rgb::splat(1.0)), Layering::Reciprocal).expect("a coat");

@@ -102,7 +102,7 @@ pub use phong::PhongNormalization;
 pub use two_sided::TwoSided;
 pub use weighted::Weighted;
 
-pub(crate) use mix::{rest_of, share};
+pub(crate) use mix::{either_scale, rest_of, share};
 
 use crate::real::{Mask, Real};
 use crate::rgb::Rgb;

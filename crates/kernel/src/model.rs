@@ -9,7 +9,7 @@
 //!
 //! From the declaration come the struct, generic over [`Real`]; its twins in `f64` and in eight lanes ([`Parameters::to`],
 //! [`Parameters::gather`]); its keys in files ([`Parameters::read`], from any [`Source`]) and their table in the documentation
-//! ([`Parameters::ENTRIES`]); its domain; which parameters take a texture (every number and colour); and what instruments sweep, nudge
+//! ([`Parameters::ENTRIES`]); its domain; which parameters can take a texture (every number and colour; the renderer offers colours); and what instruments sweep, nudge
 //! and plot ([`Parameters::map`]). Combinations of lobes are made of parameters too.
 //!
 //! ```

@@ -8,7 +8,9 @@
 //! A surface of one lobe without a coat costs what the lobe costs. One of several prepares its lobes anew in each call: arrays of
 //! prepared data would have to be filled and moved, which costs more (measured: twelve slots, two lobes, eight lanes: 187 → 80 ns).
 
-use crate::lobe::{AnyLobe, Coat, Event, Layering, Lobe, Properties, Sample, Transport, Value, Weighted, rest_of};
+use crate::lobe::{
+    AnyLobe, Coat, Event, Layering, Lobe, Properties, Sample, Transport, Value, Weighted, either_scale, rest_of,
+};
 use crate::model::{Entry, Parameter, Parameters, Source};
 use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
@@ -60,7 +62,7 @@ impl fmt::Display for SurfaceError {
         f.write_str(match self {
             Self::Full => "the surface has no room for a further lobe",
             Self::TooManyCoats => "the surface has no room for a further coat",
-            Self::NoCoat => "nothing shines through this lobe: it cannot be a coat",
+            Self::NoCoat => "nothing shines through this lobe, or its index is not in [1, 3]: it cannot be a coat",
         })
     }
 }
@@ -231,7 +233,7 @@ impl<R: Real, L: Lobe<R> + Copy, const N: usize, const C: usize> Surface<R, L, N
         self.coats.map(|placed| placed.map_or(Rgb::splat(R::ONE), |p| p.coat.transmitted(wo)))
     }
 
-    /// What each lobe returns of the light from wo, about; E of a coat itself.
+    /// What each lobe returns of the light from wo, about.
     #[inline(always)]
     fn returned(&self, wo: Vec3<R>, transmitted: &[Rgb<R>; C]) -> impl Iterator<Item = Rgb<R>> {
         self.lobes().enumerate().map(move |(index, lobe)| {
@@ -262,11 +264,11 @@ impl<R: Real, L: Lobe<R> + Copy, const N: usize, const C: usize> Surface<R, L, N
         &self,
         (index, lobe): (usize, &Weighted<R, L>),
         transmitted: &[Rgb<R>; C],
-        wi: Vec3<R>,
+        (wo, wi): (Vec3<R>, Vec3<R>),
         f_cos: Rgb<R>,
     ) -> Rgb<R> {
         let left = self.below_coats(index, lobe.is_lambertian(), |coat, i, lambertian| {
-            coat.attenuation(transmitted.get(i).copied().unwrap_or(Rgb::zero()), wi, lambertian)
+            coat.attenuation(transmitted.get(i).copied().unwrap_or(Rgb::zero()), wo, wi, lambertian)
         });
         left.map_or(f_cos, |left| f_cos * left)
     }
@@ -276,7 +278,7 @@ impl<R: Real, L: Lobe<R> + Copy, const N: usize, const C: usize> Surface<R, L, N
         let mut sum = Value::zero();
         for ((index, lobe), &p) in self.lobes().enumerate().zip(&prepared.p) {
             let value = eval_anew(lobe, wo, prepared.transport, wi);
-            sum.f_cos += self.attenuated((index, lobe), &prepared.transmitted, wi, value.f_cos);
+            sum.f_cos += self.attenuated((index, lobe), &prepared.transmitted, (wo, wi), value.f_cos);
             sum.pdf += p * value.pdf;
         }
         sum
@@ -310,7 +312,7 @@ impl<R: Real, L: Lobe<R> + Copy, const N: usize, const C: usize> Surface<R, L, N
                 let sample = Sample { event: Event { lobe: lobe_left, ..event }, ..*sample };
                 let value = lobe.delta(wo, &lobe.prepare(wo, prepared.transport), &sample);
                 // Masked last, so that a lane with a p that is not finite leaves its neighbours alone.
-                let f_cos = self.attenuated((index, lobe), &prepared.transmitted, sample.wi, value.f_cos);
+                let f_cos = self.attenuated((index, lobe), &prepared.transmitted, (wo, sample.wi), value.f_cos);
                 sum.f_cos += f_cos.or_zero(mine);
                 sum.pdf += (p * value.pdf).or_zero(mine);
             }
@@ -388,7 +390,11 @@ impl<R: Real, L: Lobe<R> + Copy, const N: usize, const C: usize> Lobe<R> for Sur
         })
     }
     fn radiance_scale(&self, wo: Vec3<R>) -> R {
-        self.lobes().fold(R::ONE, |product, lobe| product * lobe.radiance_scale(wo))
+        self.lobes().fold(R::ONE, |scale, lobe| either_scale(scale, lobe.radiance_scale(wo)))
+    }
+    #[inline]
+    fn is_lambertian(&self) -> bool {
+        self.coats.iter().all(Option::is_none) && self.lobes().all(Lobe::is_lambertian)
     }
 }
 

@@ -181,7 +181,7 @@ fn same_code(a: &Material, b: &Material) -> bool {
 
 impl Material {
     fn is_textured(&self) -> bool {
-        self.lobes.iter().any(|lobe| !lobe.textures.is_empty())
+        self.custom.is_none() && self.lobes.iter().any(|lobe| !lobe.textures.is_empty())
     }
 }
 
@@ -251,7 +251,9 @@ pub(crate) fn with_lanes<T>(
     [u, v]: [F32x8; 2],
     with: impl FnOnce(&dyn BatchBsdf) -> T,
 ) -> T {
-    if let (Some(bsdf), true) = (&materials[0].constant, alike) {
+    // A user's lobe has one variant of its own, whichever materials share it.
+    let whole_variant = alike || materials[0].spec.custom.is_some();
+    if let (Some(bsdf), true) = (&materials[0].constant, whole_variant) {
         return with(&**bsdf);
     }
     let coordinates = [u, v].map(F32x8::to_array);

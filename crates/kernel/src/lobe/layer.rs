@@ -19,9 +19,10 @@
 //! A part is chosen in proportion to E and to what the base returns through the top. Cost of a value beside those of both lobes: one
 //! division and about ten fused operations for a colourless top.
 
-use super::mix::{Prepared, shares};
+use super::mix::{Prepared, either_scale, shares};
 use super::{Lobe, Properties, Sample, Transport, Value};
 use crate::energy::AlbedoCurve;
+use crate::frame::both_above;
 use crate::model::{Entry, Parameter, Parameters, Source};
 use crate::real::Real;
 use crate::rgb::Rgb;
@@ -44,7 +45,7 @@ pub struct NoCoat;
 
 impl fmt::Display for NoCoat {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("nothing shines through this lobe: it cannot lie on top of others")
+        f.write_str("nothing shines through this lobe, or its index is not in [1, 3]: it cannot lie on top of others")
     }
 }
 impl core::error::Error for NoCoat {}
@@ -80,11 +81,18 @@ impl<R: Real> Coat<R> {
         self.transmitted(w).map(|t| R::ONE - t)
     }
 
-    /// What is left of a lobe below, with T(wo) given.
+    /// What is left of a lobe below from wo to wi, with T(wo) given.
+    ///
+    /// Only where both directions are above does light cross the top twice, and only there is the mean divided by: what a base
+    /// reflects or transmits below is left alone, and never made more.
     #[inline(always)]
-    pub fn attenuation(&self, transmitted_o: Rgb<R>, wi: Vec3<R>, lambertian: bool) -> Rgb<R> {
+    pub fn attenuation(&self, transmitted_o: Rgb<R>, wo: Vec3<R>, wi: Vec3<R>, lambertian: bool) -> Rgb<R> {
         match self.layering {
-            Layering::Reciprocal => transmitted_o * self.transmitted(wi) * self.over[usize::from(!lambertian)],
+            Layering::Reciprocal => {
+                let over = if lambertian { self.over[0] } else { self.over[1] };
+                let over = Rgb::select(both_above(wo, wi), over, Rgb::splat(R::ONE));
+                transmitted_o * self.transmitted(wi) * over
+            }
             Layering::FurnacePreserving => transmitted_o,
         }
     }
@@ -93,7 +101,7 @@ impl<R: Real> Coat<R> {
     #[inline(always)]
     pub(crate) fn largest_attenuation(&self, transmitted_o: Rgb<R>, lambertian: bool) -> Rgb<R> {
         match self.layering {
-            Layering::Reciprocal if lambertian => transmitted_o * self.over[0],
+            Layering::Reciprocal if lambertian => transmitted_o * self.over[0].map(|over| over.max(R::ONE)),
             _ => transmitted_o,
         }
     }
@@ -184,7 +192,7 @@ impl<R: Real, T: Lobe<R>, B: Lobe<R>> Lobe<R> for Layer<R, T, B> {
     fn eval(&self, wo: Vec3<R>, prepared: &Self::Prepared, wi: Vec3<R>) -> Value<R> {
         let Layered { parts, transmitted } = prepared;
         let (top, base) = (self.top.eval(wo, &parts.a, wi), self.base.eval(wo, &parts.b, wi));
-        let base = base.times(self.coat.attenuation(*transmitted, wi, self.base.is_lambertian()));
+        let base = base.times(self.coat.attenuation(*transmitted, wo, wi, self.base.is_lambertian()));
         Value { f_cos: top.f_cos + base.f_cos, pdf: parts.pdf(top.pdf, base.pdf) }
     }
     #[inline(always)]
@@ -194,7 +202,7 @@ impl<R: Real, T: Lobe<R>, B: Lobe<R>> Lobe<R> for Layer<R, T, B> {
     #[inline(always)]
     fn delta(&self, wo: Vec3<R>, prepared: &Self::Prepared, sample: &Sample<R>) -> Value<R> {
         let [top, base] = prepared.parts.delta((&self.top, &self.base), wo, sample);
-        let base = base.times(self.coat.attenuation(prepared.transmitted, sample.wi, self.base.is_lambertian()));
+        let base = base.times(self.coat.attenuation(prepared.transmitted, wo, sample.wi, self.base.is_lambertian()));
         Value { f_cos: top.f_cos + base.f_cos, pdf: prepared.parts.pdf(top.pdf, base.pdf) }
     }
     #[inline(always)]
@@ -219,7 +227,7 @@ impl<R: Real, T: Lobe<R>, B: Lobe<R>> Lobe<R> for Layer<R, T, B> {
     }
     #[inline(always)]
     fn radiance_scale(&self, wo: Vec3<R>) -> R {
-        self.top.radiance_scale(wo) * self.base.radiance_scale(wo)
+        either_scale(self.top.radiance_scale(wo), self.base.radiance_scale(wo))
     }
 }
 

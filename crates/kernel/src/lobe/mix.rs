@@ -43,6 +43,12 @@ pub(super) fn shares<R: Real>(a: Rgb<R>, b: Rgb<R>) -> [R; 2] {
     [share(a, b), share(b, a)]
 }
 
+/// The scale of radiance of two lobes of one interface: that of the one that transmits.
+#[inline(always)]
+pub(crate) fn either_scale<R: Real>(a: R, b: R) -> R {
+    R::select(a.same(R::ONE), b, a)
+}
+
 /// What is left of u₀ inside the interval of length p from `below`: uniform again, and below 1 even after rounding.
 #[inline(always)]
 pub(crate) fn rest_of<R: Real>(u: R, below: R, p: R) -> R {
@@ -139,7 +145,11 @@ impl<R: Real, A: Lobe<R>, B: Lobe<R>> Lobe<R> for Mix<A, B> {
     }
     #[inline(always)]
     fn radiance_scale(&self, wo: Vec3<R>) -> R {
-        self.0.radiance_scale(wo) * self.1.radiance_scale(wo)
+        either_scale(self.0.radiance_scale(wo), self.1.radiance_scale(wo))
+    }
+    #[inline(always)]
+    fn is_lambertian(&self) -> bool {
+        self.0.is_lambertian() && self.1.is_lambertian()
     }
 }
 

@@ -227,6 +227,8 @@ fn layers() -> Vec<Row> {
         coated("coat 0.3 1.5 over eon", coat(0.3, 1.5), eon(COLOUR, 0.7, "analytic"), both),
         coated("coat 0.1 1.5 over conductor", coat(0.1, 1.5), gold, both),
         coated("coat 0 1.5 over mirror", coat(0.0, 1.5), mirror(WHITE), both),
+        coated("coat 0.1 1.5 over glass", coat(0.1, 1.5), glass(1.5), both),
+        coated("coat 0 1.5 over ground glass", coat(0.0, 1.5), dielectric([0.3, 0.3], 1.5), both),
         coated("coat 0.1 1.5 over lambert, furnace-preserving", coat(0.1, 1.5), diffuse(COLOUR), view),
         coated("coat 0 1.5 over conductor, furnace-preserving", coat(0.0, 1.5), gold, view),
     ]

@@ -107,7 +107,15 @@ fn layered(table: &Table<'_>, context: &mut Context<'_>) -> Result<Vec<LobeSpec>
     }
     let coating = coating.map(&mut |_, _, x| x as f32);
     let mut all = vec![LobeSpec::new(coating.lobe()).as_coat(coating.layering)];
-    for lobe in lobes(&base, context)? {
+    let below = lobes(&base, context)?;
+    let white = coating.color == Rgb::splat(1.0);
+    if !white && below.iter().any(|lobe| lobe.coat.is_some()) {
+        // A factor on a coat is how much of the surface it covers.
+        return Err(
+            table.error("\"color\" is that of the innermost coat: a coloured coat over a layered base is not possible")
+        );
+    }
+    for lobe in below {
         all.push(LobeSpec { weight: lobe.weight * coating.color, ..lobe });
     }
     Ok(all)

@@ -160,6 +160,10 @@ fn a_layered_material_is_a_coat_over_its_base() {
     assert_eq!(read_text(twice).unwrap().lobes.iter().filter(|l| l.coat.is_some()).count(), 2);
     for (text, says) in [
         ("type = \"layered\"", "a layered material needs a \"base\", a table"),
+        (
+            "type = \"layered\"\ncolor = 0.5\nbase = { type = \"layered\", base = {} }",
+            "a coloured coat over a layered base is not possible",
+        ),
         ("type = \"layered\"\nior = 0.9\nbase = {}", "\"ior\" must be a number from 1 to 3, not 0.9"),
         ("type = \"layered\"\nbase = { gloss = 1 }", "unknown key \"gloss\" in the base of the material"),
         ("type = \"layered\"\ngloss = 1\nbase = {}", "unknown key \"gloss\" in the material; known are"),
