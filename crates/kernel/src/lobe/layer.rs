@@ -45,7 +45,7 @@ pub struct NoCoat;
 
 impl fmt::Display for NoCoat {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("nothing shines through this lobe, or its index is not in [1, 3]: it cannot lie on top of others")
+        f.write_str("nothing shines through this lobe: it cannot lie on top of others")
     }
 }
 impl core::error::Error for NoCoat {}
@@ -141,7 +141,7 @@ pub struct Layer<R, T, B> {
 }
 
 impl<R: Real, T: Parameters<Real = R>, B> Layer<R, T, B> {
-    /// One lobe over another.
+    /// One lobe over another. Through a dielectric whose index is not in \[1, 3\] nothing is known to shine: its base is black.
     ///
     /// # Errors
     /// The top is a lobe that nothing shines through.
@@ -154,7 +154,7 @@ impl<R: Real, T: Parameters<Real = R>, B> Layer<R, T, B> {
     /// With the layering of another, whose top was a coat.
     #[inline(always)]
     fn like(top: T, base: B, layering: Layering) -> Self {
-        let albedo = top.albedo_curve().unwrap_or(AlbedoCurve::constant(Rgb::zero()));
+        let albedo = top.albedo_curve().unwrap_or(AlbedoCurve::constant(Rgb::splat(R::ONE)));
         Self { top, base, coat: Coat::new(albedo, layering) }
     }
 }
