@@ -207,7 +207,7 @@ pub trait Parameters: Copy {
     /// ```
     /// use gonio_kernel::{Rgb, lobe::Lambert, model::Parameters};
     /// let double = Lambert::new(Rgb::splat(0.5_f32)).to::<f64>();
-    /// assert_eq!(double.base_color.g, 0.5);
+    /// assert_eq!(double.albedo.g, 0.5);
     /// ```
     #[inline(always)]
     fn to<S: Real>(&self) -> Self::Of<S>
