@@ -54,6 +54,7 @@ pub mod math;
 pub mod metal;
 pub mod microfacet;
 pub mod model;
+mod operators;
 mod real;
 mod rgb;
 pub mod surface;

@@ -1,5 +1,6 @@
 //! A colour of three linear Rec. 709 channels: a reflectance, a radiance, a weight.
 
+use crate::operators::{by_component, by_number};
 use crate::real::Real;
 use core::iter::Sum;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Sub, SubAssign};
@@ -108,72 +109,14 @@ impl<R: Real> Rgb<R> {
     }
 }
 
-macro_rules! operators {
-    ($($op:ident $f:ident $assign:ident $assign_f:ident $sign:tt),*) => {$(
-        /// Channel by channel.
-        impl<R: Real> $op for Rgb<R> {
-            type Output = Self;
-            #[inline(always)]
-            fn $f(self, other: Self) -> Self {
-                Self::new(self.r $sign other.r, self.g $sign other.g, self.b $sign other.b)
-            }
-        }
-        /// Channel by channel.
-        impl<R: Real> $assign for Rgb<R> {
-            #[inline(always)]
-            fn $assign_f(&mut self, other: Self) {
-                *self = *self $sign other;
-            }
-        }
-    )*};
-}
-operators!(
+by_component!(
+    Rgb(r, g, b):
     Add add AddAssign add_assign +,
     Sub sub SubAssign sub_assign -,
     Mul mul MulAssign mul_assign *,
     Div div DivAssign div_assign /
 );
-
-macro_rules! by_number {
-    ($($op:ident $f:ident $assign:ident $assign_f:ident $sign:tt),*) => {$(
-        /// Each channel by the same number; a division is a true one.
-        impl<R: Real> $op<R> for Rgb<R> {
-            type Output = Self;
-            #[inline(always)]
-            fn $f(self, k: R) -> Self {
-                self.map(|x| x $sign k)
-            }
-        }
-        /// Each channel by the same number.
-        impl<R: Real> $assign<R> for Rgb<R> {
-            #[inline(always)]
-            fn $assign_f(&mut self, k: R) {
-                *self = *self $sign k;
-            }
-        }
-    )*};
-}
-by_number!(Mul mul MulAssign mul_assign *, Div div DivAssign div_assign /);
-
-macro_rules! number_times {
-    ($($(#[$cfg:meta])* $number:ty),*) => {$(
-        /// Each channel times the number.
-        $(#[$cfg])*
-        impl Mul<Rgb<$number>> for $number {
-            type Output = Rgb<$number>;
-            #[inline(always)]
-            fn mul(self, c: Rgb<$number>) -> Rgb<$number> {
-                c * self
-            }
-        }
-    )*};
-}
-number_times!(
-    f32,
-    f64,
-    #[cfg(feature = "wide")]
-    crate::lanes::F32x8
-);
+by_number!(Rgb(r, g, b));
 
 /// From black on, in order.
 impl<R: Real> Sum for Rgb<R> {

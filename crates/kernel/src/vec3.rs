@@ -1,5 +1,6 @@
 //! A vector of three reals: a direction, a point or a displacement, in whichever frame the caller keeps it.
 
+use crate::operators::{by_component, by_number};
 use crate::real::Real;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -118,67 +119,8 @@ impl<R: Real> Vec3<R> {
     }
 }
 
-macro_rules! operators {
-    ($($op:ident $f:ident $assign:ident $assign_f:ident $sign:tt),*) => {$(
-        /// Component by component.
-        impl<R: Real> $op for Vec3<R> {
-            type Output = Self;
-            #[inline(always)]
-            fn $f(self, other: Self) -> Self {
-                Self::new(self.x $sign other.x, self.y $sign other.y, self.z $sign other.z)
-            }
-        }
-        /// Component by component.
-        impl<R: Real> $assign for Vec3<R> {
-            #[inline(always)]
-            fn $assign_f(&mut self, other: Self) {
-                *self = *self $sign other;
-            }
-        }
-    )*};
-}
-operators!(Add add AddAssign add_assign +, Sub sub SubAssign sub_assign -);
-
-macro_rules! by_number {
-    ($($op:ident $f:ident $assign:ident $assign_f:ident $sign:tt),*) => {$(
-        /// Each component by the same number; a division is a true one.
-        impl<R: Real> $op<R> for Vec3<R> {
-            type Output = Self;
-            #[inline(always)]
-            fn $f(self, k: R) -> Self {
-                Self::new(self.x $sign k, self.y $sign k, self.z $sign k)
-            }
-        }
-        /// Each component by the same number.
-        impl<R: Real> $assign<R> for Vec3<R> {
-            #[inline(always)]
-            fn $assign_f(&mut self, k: R) {
-                *self = *self $sign k;
-            }
-        }
-    )*};
-}
-by_number!(Mul mul MulAssign mul_assign *, Div div DivAssign div_assign /);
-
-macro_rules! number_times {
-    ($($(#[$cfg:meta])* $number:ty),*) => {$(
-        /// Each component times the number.
-        $(#[$cfg])*
-        impl Mul<Vec3<$number>> for $number {
-            type Output = Vec3<$number>;
-            #[inline(always)]
-            fn mul(self, v: Vec3<$number>) -> Vec3<$number> {
-                v * self
-            }
-        }
-    )*};
-}
-number_times!(
-    f32,
-    f64,
-    #[cfg(feature = "wide")]
-    crate::lanes::F32x8
-);
+by_component!(Vec3(x, y, z): Add add AddAssign add_assign +, Sub sub SubAssign sub_assign -);
+by_number!(Vec3(x, y, z));
 
 /// The opposite direction.
 impl<R: Real> Neg for Vec3<R> {
