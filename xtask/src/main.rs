@@ -10,12 +10,11 @@ mod elf;
 mod embed;
 mod embree;
 mod fuzz;
+mod gonio;
 mod no_std;
 mod peers;
 mod rays;
 mod sources;
-mod tables;
-mod validate;
 
 use std::process::ExitCode;
 
@@ -51,7 +50,7 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     };
     let result = match (command.as_str(), rest) {
-        ("validate", rest) => validate::run(rest),
+        ("validate", rest) => gonio::validate(rest),
         ("embree", []) => embree::run(),
         ("embed", []) => embed::run(),
         ("no-std", []) => no_std::run(),
@@ -61,7 +60,7 @@ fn main() -> ExitCode {
         ("ratio", []) => bench::ratio(),
         ("rays", rest) => rays::run(rest),
         ("fuzz", rest) => fuzz::run(rest),
-        ("tables", rest) => tables::run(rest),
+        ("tables", rest) => gonio::tables(rest),
         ("ci", []) => ci::run(),
         ("help" | "-h" | "--help", []) => {
             print!("{USAGE}");

@@ -1,10 +1,20 @@
-//! `cargo xtask validate`: builds `gonio` as the tests are built, so that both share one build, and runs its checks.
+//! `cargo xtask validate` and `cargo xtask tables`: `gonio` as the tests are built, so that all share one build.
 
 use crate::cargo::{Outcome, cargo, program, run as run_program};
 use std::process::ExitCode;
 
-/// Passes on the exit code: 0 success, 1 an error, 2 wrong usage, 3 a check failed; cargo's 101 if the build failed.
-pub(crate) fn run(arguments: &[String]) -> Outcome {
+/// `gonio validate`. Passes on the exit code: 0 success, 1 an error, 2 wrong usage, 3 a check failed; cargo's 101 if the
+/// build failed.
+pub(crate) fn validate(arguments: &[String]) -> Outcome {
+    gonio("validate", arguments)
+}
+
+/// `gonio tables`: writes the kernel's generated source, or with `--check` compares it: exit code 1 if it differs.
+pub(crate) fn tables(arguments: &[String]) -> Outcome {
+    gonio("tables", arguments)
+}
+
+fn gonio(command: &str, arguments: &[String]) -> Outcome {
     let (for_cargo, for_gonio) = split(arguments);
     // With the tests, because what they need switches on features of common dependencies: without them, nearly everything
     // would be built a second time.
@@ -13,7 +23,7 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
         return Ok(built);
     }
     let own = std::env::current_exe().map_err(|e| format!("this program cannot be found: {e}"))?;
-    run_program(program(own.with_file_name("gonio")).arg("validate").args(for_gonio))
+    run_program(program(own.with_file_name("gonio")).arg(command).args(for_gonio))
 }
 
 /// What is cargo's, `--features LIST` and `--features=LIST`, and the rest.
