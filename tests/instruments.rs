@@ -1,4 +1,5 @@
 //! A check that cannot fail does not count: every instrument is tested on planted faults, and certificates on good and bad lobes.
+//! What the instruments say of the kernel is `cargo xtask validate`'s to tell.
 
 use gonio_kernel::warp::{pdf_cosine_hemisphere, pdf_uniform_sphere, sample_cosine_hemisphere, sample_uniform_sphere};
 use gonio_kernel::{Event, Lobe, Rgb, Sample, Transport, Value, Vec3};
@@ -23,13 +24,6 @@ fn every_planted_fault_is_caught() {
     for (name, _) in instruments().iter().filter(|(name, _)| *name != "planted-faults") {
         let caught = checks.iter().any(|check| check.subject.ends_with(&format!("→ {name}")));
         assert!(caught, "no fault is planted for {name}");
-    }
-}
-
-#[test]
-fn the_quick_instruments_find_no_fault_in_the_kernel() {
-    for (name, _) in instruments().iter().filter(|(name, _)| *name != "planted-faults") {
-        assert_eq!(failures(&checks(name, 1)), Vec::<String>::new());
     }
 }
 
