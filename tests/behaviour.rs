@@ -3,7 +3,7 @@
 #![cfg(unix)]
 
 use crate::support::repository;
-use gonio_tracer::image::read_exr;
+use gonio_io::exr;
 use serde_json::Value;
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
@@ -82,7 +82,7 @@ fn a_render_that_is_stopped_writes_the_picture_it_has() {
         let mut whole = Command::new(PROGRAM);
         whole.arg("render").arg(scene).args(["--size", "32x32", "-o", "b.exr", "--spp", &spp.to_string()]);
         assert!(whole.current_dir(folder.path()).status().unwrap().success());
-        let read = |name: &str| read_exr(&folder.path().join(name)).unwrap();
+        let read = |name: &str| exr::read(&folder.path().join(name)).unwrap();
         assert_eq!(read("a.exr"), read("b.exr"));
     }
 }
@@ -133,7 +133,7 @@ fn sighup_shows_the_picture_so_far_and_the_render_goes_on() {
         assert!(start.elapsed() < Duration::from_secs(60), "no picture came");
         sleep(Duration::from_millis(20));
     }
-    let early = read_exr(&picture).unwrap();
+    let early = exr::read(&picture).unwrap();
     assert!(render.child.try_wait().unwrap().is_none(), "the render goes on");
     render.send("-TERM");
     assert_eq!(render.end().0, Some(75));
@@ -170,7 +170,7 @@ fn a_full_disk_says_so_and_the_picture_is_saved_elsewhere() {
     assert_eq!(String::from_utf8(run.stdout).unwrap(), "", "something is left on the full disk");
     let saved = names(&refuge);
     assert!(saved.len() == 1 && said.contains(&saved[0]), "{saved:?}: {said}");
-    assert_eq!(read_exr(&refuge.join(&saved[0])).unwrap().width, 256);
+    assert_eq!(exr::read(&refuge.join(&saved[0])).unwrap().width, 256);
 }
 
 #[cfg(target_os = "linux")]

@@ -4,9 +4,8 @@
 
 use crate::support::{Folder, moments, repository, welch};
 use gonio_accel::Intersect;
-use gonio_tracer::image::Picture;
 use gonio_tracer::scene::{Environment, Scene, Sky, SkyMap};
-use gonio_tracer::{Backend, RenderSettings, Techniques, World, render};
+use gonio_tracer::{Backend, Picture, RenderSettings, Techniques, World, render};
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -89,7 +88,7 @@ fn plate(material: &str, n: [f64; 3], from: [f64; 3], folder: &Folder) -> Scene 
          [materials.m]\n{material}\n[[meshes]]\nfile = \"plate.obj\"\nmaterial = \"m\"\n",
         from.map(|c| 4.0 * c)
     );
-    Scene::load(&folder.write("plate.toml", text)).expect("the scene is sound")
+    gonio_io::load(&folder.write("plate.toml", text)).expect("the scene is sound")
 }
 
 fn lit(mut scene: Scene, sky: SkyMap) -> Scene {
@@ -204,7 +203,7 @@ fn objects(folder: &Folder) -> Scene {
              transform = [{{ scale = 0.65 }}, {{ translate = [{x}, 0.7, 0] }}]\n"
         );
     }
-    Scene::load(&folder.write("scene.toml", text)).expect("the scene is sound")
+    gonio_io::load(&folder.write("scene.toml", text)).expect("the scene is sound")
 }
 
 #[test]

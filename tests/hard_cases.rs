@@ -8,7 +8,6 @@ mod input;
 
 use gonio_kernel::closure::Unguarded;
 use gonio_kernel::{Closure, F32x8, Frame, Lobe, Surface, Transport, Value, Vec3};
-use gonio_tracer::scene::Material;
 use input::{Arithmetic, number, numbers, read, surface, vector};
 use serde_json::{Value as Json, json};
 use std::fs;
@@ -242,7 +241,7 @@ fn refusal_is_wrong(case: &Json) -> Option<String> {
     // JSON scalars and arrays are TOML as well.
     let material = case["material"].as_object().expect("a material");
     let text: String = material.iter().map(|(key, value)| format!("{key} = {value}\n")).collect();
-    match Material::from_toml_str(&text, Path::new("case.toml")) {
+    match gonio_io::material_from_toml_str(&text, Path::new("case.toml")) {
         Ok(_) => Some("was accepted".to_owned()),
         Err(error) if error.to_string().contains(words) => None,
         Err(error) => Some(format!("was refused, but not for \"{words}\": {error}")),

@@ -4,7 +4,7 @@
 //! picture is written; the peak comes before, when the tree is built.
 
 use crate::fuzz::high_water;
-use gonio_tracer::scene::{Loading, Scene, Stage};
+use gonio_tracer::scene::{Loading, Stage};
 use gonio_tracer::{Backend, World};
 use std::fmt::Write as _;
 use std::fs;
@@ -120,7 +120,7 @@ fn loading_tells_how_far_it_is() {
     let path = height_field(400, folder.path());
     let size = fs::metadata(&path).expect("it was just written").len();
     let mut told: Vec<Loading> = Vec::new();
-    let mut scene = Scene::load_with(&path, &mut |loading| told.push(loading)).expect("a height field loads");
+    let mut scene = gonio_io::load_with(&path, &mut |loading| told.push(loading)).expect("a height field loads");
     let (meshes, materials) = (scene.meshes.clone(), scene.materials.clone());
     let world = World::take(&mut scene, &mut |loading| told.push(loading)).expect("and can be placed");
     let accel = Backend::Obvhs.build_with(world.geometry(), Default::default(), &mut |loading| told.push(loading));

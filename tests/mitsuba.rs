@@ -7,10 +7,10 @@
 
 use crate::support::{Folder, Moments, cornell_box, data, moments, repository, welch};
 use gonio_accel::Intersect;
-use gonio_tracer::image::{Metadata, Picture, write_exr};
+use gonio_io::exr::{self, Metadata};
 use gonio_tracer::normal_map::NormalMap;
 use gonio_tracer::scene::{NormalMapSpec, Scene, Sky};
-use gonio_tracer::{Backend, RenderSettings, World, render};
+use gonio_tracer::{Backend, Picture, RenderSettings, World, render};
 use serde::Deserialize;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -113,7 +113,7 @@ fn under(map: &Path, folder: &Folder) -> Scene {
              transform = [{{ scale = 0.65 }}, {{ translate = [{x}, 0.7, 0] }}]\n"
         );
     }
-    let mut scene = Scene::load(&folder.write("scene.toml", text)).expect("the scene is sound");
+    let mut scene = gonio_io::load(&folder.write("scene.toml", text)).expect("the scene is sound");
     scene.meshes.iter_mut().for_each(|mesh| mesh.normals = None);
     scene
 }
@@ -126,7 +126,7 @@ fn formula(folder: &Folder) -> std::path::PathBuf {
     };
     let rgb = (0..12).flat_map(|row| (0..24).map(move |column| texel(row, column))).collect();
     let path = folder.path().join("formula.exr");
-    write_exr(&path, &Picture { width: 24, height: 12, rgb }, None, &Metadata::default())
+    exr::write(&path, &Picture { width: 24, height: 12, rgb }, None, &Metadata::default())
         .expect("the folder takes files");
     path
 }
@@ -159,7 +159,7 @@ fn scenes_under_panoramas_agree_with_mitsuba() {
 
 #[test]
 fn normal_maps_agree_with_mitsuba() {
-    let load = || Scene::load(&repository("tests/reference/normal_map.toml")).expect("the scene is shipped");
+    let load = || gonio_io::load(&repository("tests/reference/normal_map.toml")).expect("the scene is shipped");
     compare("normal_map", &load()).unwrap();
     // Green downwards, or slopes a twentieth too steep: both are seen.
     let mut green = load();

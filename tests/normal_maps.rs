@@ -4,7 +4,7 @@ use crate::support::{Folder, repository};
 use gonio_accel::{Intersect, Sharing};
 use gonio_kernel::Vec3;
 use gonio_tracer::normal_map::NormalMap;
-use gonio_tracer::scene::{Material, Scene};
+use gonio_tracer::scene::Scene;
 use gonio_tracer::{Backend, Plan, RenderSettings, Rendering, World, render};
 use std::fs;
 use std::ops::ControlFlow;
@@ -26,7 +26,7 @@ fn scene(folder: &Folder, square: &str, height: f64, material: &str, place: &str
          [materials.m]\nnormal_map = \"map.png\"\n{material}\n\
          [[meshes]]\nfile = \"square.obj\"\nmaterial = \"m\"\n{place}\n"
     );
-    Scene::load(&folder.write("scene.toml", text)).expect("the scene is sound")
+    gonio_io::load(&folder.write("scene.toml", text)).expect("the scene is sound")
 }
 
 /// A map that is the same normal everywhere.
@@ -128,7 +128,7 @@ fn white_lambert_tilted_by_beta_returns_half_of_one_plus_its_cosine() {
 
 #[test]
 fn a_plan_with_every_effect_renders_the_same_picture_and_the_pruned_one_knows_its_effect() {
-    let mut scene = Scene::load(&repository("tests/reference/normal_map.toml")).expect("the scene is shipped");
+    let mut scene = gonio_io::load(&repository("tests/reference/normal_map.toml")).expect("the scene is shipped");
     scene.film.spp = 4;
     let world = World::new(&scene).expect("the scene is sound");
     assert!(world.plan().normal_maps && !world.plan().textures && !world.plan().tangents);
@@ -180,6 +180,7 @@ fn what_is_wrong_with_a_normal_map_is_said_with_its_line() {
     let in_a_lobe = "type = \"mix\"\nlobes = [{ base_color = 0.5, normal_map = \"map.png\" }]";
     let refused = refusal(&folder, SQUARE, in_a_lobe);
     assert!(refused.starts_with("scene.toml:3: unknown key \"normal_map\""), "{refused}");
-    let alone = Material::from_toml_str("normal_map = \"map.png\"", Path::new("m.toml")).unwrap_err().to_string();
+    let alone =
+        gonio_io::material_from_toml_str("normal_map = \"map.png\"", Path::new("m.toml")).unwrap_err().to_string();
     assert_eq!(alone, "m.toml:1: an image is only possible in a scene file");
 }

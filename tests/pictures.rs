@@ -8,9 +8,8 @@ use gonio_kernel::energy::Compensation;
 use gonio_kernel::fresnel::Fresnel;
 use gonio_kernel::lobe::{AnyLobe, Coating, Conductor, Dielectric, Lambert, Layer, Layering, Mirror, RoughDielectric};
 use gonio_kernel::microfacet::Ggx;
-use gonio_tracer::image::Picture;
 use gonio_tracer::scene::{Environment, LobeSpec, Material, Scene, Sky, SkyMap};
-use gonio_tracer::{Backend, Crop, CustomLobe, Plan, RenderSettings, Rendering, Techniques, World, render};
+use gonio_tracer::{Backend, Crop, CustomLobe, Picture, Plan, RenderSettings, Rendering, Techniques, World, render};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -99,7 +98,7 @@ fn count(pixels: &[bool]) -> usize {
 
 /// The shipped spheres, in little.
 fn spheres() -> Scene {
-    let mut scene = Scene::load(&repository("scenes/spheres.toml")).expect("the shipped scene loads");
+    let mut scene = gonio_io::load(&repository("scenes/spheres.toml")).expect("the shipped scene loads");
     (scene.film.width, scene.film.height, scene.film.spp) = (96, 64, 16);
     scene
 }
@@ -256,7 +255,7 @@ fn no_light_leaks_into_a_closed_black_box() {
 /// The shipped white furnace with an object of another material.
 fn furnace_of(lobe: impl Into<AnyLobe<'static, f32>>) -> Scene {
     let lobe = lobe.into();
-    let mut scene = Scene::load(&repository("scenes/furnace-white.toml")).expect("the shipped scene loads");
+    let mut scene = gonio_io::load(&repository("scenes/furnace-white.toml")).expect("the shipped scene loads");
     (scene.film.width, scene.film.height, scene.film.spp) = (32, 32, 64);
     scene.integrator.max_depth = 256;
     scene.integrator.russian_roulette = false;

@@ -7,10 +7,12 @@ use std::fs;
 use std::time::{Duration, Instant};
 
 use crate::support::{Folder, data};
+use gonio_io::exr::{self, Metadata};
+use gonio_io::png;
 use gonio_kernel::Rgb;
 use gonio_kernel::lobe::{AnyLobe, Lambert};
-use gonio_tracer::image::{Metadata, Picture, write_exr, write_png};
-use gonio_tracer::scene::{Environment, Scene};
+use gonio_tracer::Picture;
+use gonio_tracer::scene::Environment;
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
@@ -39,7 +41,7 @@ fn every_torture_file_loads_or_says_why_in_under_a_second() {
                 continue;
             }
             let start = Instant::now();
-            let result = Scene::load(&path);
+            let result = gonio_io::load(&path);
             assert!(start.elapsed() < Duration::from_secs(1), "{}: {:?}", path.display(), start.elapsed());
             match result {
                 Ok(scene) => {
@@ -61,7 +63,7 @@ fn every_torture_file_loads_or_says_why_in_under_a_second() {
 #[test]
 fn an_obj_alone_gets_a_camera_and_a_white_sky() {
     let folder = Folder::new();
-    let scene = Scene::load(&folder.write("tri.obj", TRIANGLE)).unwrap();
+    let scene = gonio_io::load(&folder.write("tri.obj", TRIANGLE)).unwrap();
     assert_eq!(scene.meshes[0].triangles, [[0, 1, 2]]);
     assert_eq!(scene.environment, Environment::constant(Rgb::splat(1.0)));
     assert!(scene.camera.origin.z > 0.0 && scene.camera.origin.y > 0.0);
@@ -75,7 +77,7 @@ fn the_example_in_the_documentation_loads() {
     folder.write("teapot.obj", TRIANGLE);
     let page = include_str!("../docs/scene-format.md");
     let example = page.split("```toml").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
-    let scene = Scene::load(&folder.write("scene.toml", example)).unwrap();
+    let scene = gonio_io::load(&folder.write("scene.toml", example)).unwrap();
     assert_eq!(folder.warnings(&scene), Vec::<String>::new());
     assert_eq!((scene.film.width, scene.film.spp, scene.integrator.max_depth), (512, 64, 8));
     assert_eq!(scene.materials[scene.meshes[0].materials[0] as usize].name, "lamp");
@@ -90,7 +92,7 @@ fn every_key_of_film_camera_and_integrator_arrives() {
                 [camera]\norigin = [1, 2, 3]\ntarget = [0, 0, 0.5]\nup = [0, 0, 1]\nvfov = 90\n\
                 [integrator]\nmax_depth = 0\nrussian_roulette = false\nseed = 0xffff_ffff_ffff_ffff\n\
                 [[meshes]]\nfile = \"tri.obj\"\n";
-    let scene = Scene::load(&folder.write("scene.toml", text)).unwrap();
+    let scene = gonio_io::load(&folder.write("scene.toml", text)).unwrap();
     let film = scene.film;
     assert_eq!((film.width, film.height, film.spp, film.exposure), (1, 65_536, 1_048_576, -1.5));
     let camera = scene.camera;
@@ -253,7 +255,7 @@ fn materials_come_from_the_scene_then_the_library_then_grey() {
                 [[meshes]]\nfile = \"sub/ship.obj\"\nmaterials = { hull = \"blue\" }\ntransform = [{ translate = [2, 0, 0] }]\n\
                 [[meshes]]\nfile = \"sub/ship.obj\"\nmaterial = \"red\"\n\
                 [[meshes]]\nfile = \"sub/ship.obj\"\ntransform = [{ scale = 2 }, { translate = [0, 0, 1] }]\n";
-    let scene = Scene::load(&folder.write("scene.toml", text)).unwrap();
+    let scene = gonio_io::load(&folder.write("scene.toml", text)).unwrap();
     let names = |mesh: usize| -> Vec<&str> {
         scene.meshes[mesh].materials.iter().map(|&m| scene.materials[m as usize].name.as_str()).collect()
     };
@@ -276,7 +278,7 @@ fn a_bad_line_in_a_library_costs_only_that_line() {
         "m.mtl",
         "Kd 1 1 1\nnewmtl a\nKd 0.5 0.5\nKd spectral x.rfl\nKs 2 0 0\nillum two\nmap_Kd\nNi 1.5\nd 0.5\nmap_Bump b.png\nKt 1 1 1\n",
     );
-    let scene = Scene::load(&folder.write("m.obj", format!("mtllib gone.mtl m.mtl\nusemtl a\n{TRIANGLE}"))).unwrap();
+    let scene = gonio_io::load(&folder.write("m.obj", format!("mtllib gone.mtl m.mtl\nusemtl a\n{TRIANGLE}"))).unwrap();
     assert_eq!(
         folder.warnings(&scene),
         [
@@ -300,13 +302,13 @@ fn base_colour_images_are_found_decoded_and_shared() {
     let folder = Folder::new();
     let red = Picture { width: 1, height: 1, rgb: vec![[1.0, 0.0, 0.0]] };
     fs::create_dir_all(folder.path().join("tex")).unwrap();
-    write_png(&folder.path().join("tex/red wood.png"), &red, 0.0).unwrap();
+    png::write(&folder.path().join("tex/red wood.png"), &red, 0.0).unwrap();
     folder.write(
         "m.mtl",
         "newmtl a\nKd 0.5 0.5 0.5\nmap_Kd -s 2 2 2 C:\\work\\tex\\red wood.png\nnewmtl b\nmap_Kd tex\\red wood.png\n",
     );
     let obj = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n";
-    let scene = Scene::load(&folder.write("m.obj", obj)).unwrap();
+    let scene = gonio_io::load(&folder.write("m.obj", obj)).unwrap();
     assert_eq!(
         folder.warnings(&scene),
         [
@@ -326,12 +328,12 @@ fn pictures_that_cannot_be_written_say_so_and_leave_nothing_behind() {
     let folder = Folder::new();
     let picture = Picture { width: 1, height: 1, rgb: vec![[1.0; 3]] };
     let nowhere = folder.path().join("absent/a.exr");
-    let text = write_exr(&nowhere, &picture, None, &Metadata::default()).unwrap_err().to_string();
+    let text = exr::write(&nowhere, &picture, None, &Metadata::default()).unwrap_err().to_string();
     assert!(folder.strip(&text).starts_with("absent/a.exr: cannot be written: "), "{text}");
-    let text = write_png(&nowhere, &picture, 0.0).unwrap_err().to_string();
+    let text = png::write(&nowhere, &picture, 0.0).unwrap_err().to_string();
     assert!(folder.strip(&text).starts_with("absent/a.exr: cannot be written: "), "{text}");
     let taken = folder.path().join("taken.png"); // a folder of that name cannot be replaced by a file
     fs::create_dir(&taken).unwrap();
-    assert!(write_png(&taken, &picture, 0.0).is_err());
+    assert!(png::write(&taken, &picture, 0.0).is_err());
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }

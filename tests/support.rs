@@ -24,7 +24,7 @@ pub(crate) fn data(path: &str) -> Option<PathBuf> {
 
 /// The shipped Cornell box, `size` pixels wide and high.
 pub(crate) fn cornell_box(size: u32, spp: u32) -> Scene {
-    let mut scene = Scene::load(&repository("scenes/cornell-box.toml")).expect("the shipped scene loads");
+    let mut scene = gonio_io::load(&repository("scenes/cornell-box.toml")).expect("the shipped scene loads");
     scene.film.width = size;
     scene.film.height = size;
     scene.film.spp = spp;
@@ -53,7 +53,7 @@ impl Folder {
 
     /// The refusal of a file, without the folder's name.
     pub(crate) fn refusal(&self, path: &Path) -> String {
-        let error = Scene::load(path).expect_err("this should have been refused");
+        let error = gonio_io::load(path).expect_err("this should have been refused");
         self.strip(&error.to_string())
     }
 

@@ -36,7 +36,7 @@ fn bunny() -> Option<Mesh> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
     let path = std::env::var_os("GONIO_DATA").map_or_else(beside, PathBuf::from);
     let path = path.join("scenes/meshes/stanford-bunny.obj");
-    let scanned = gonio_tracer::scene::Scene::load(&path).ok().filter(|_| path.exists())?;
+    let scanned = gonio_io::load(&path).ok().filter(|_| path.exists())?;
     let world = World::new(&scanned).ok()?;
     Some(world.geometry().meshes()[0].clone())
 }

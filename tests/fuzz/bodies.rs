@@ -4,12 +4,10 @@
 //! what loads obeys the invariants that [`Scene`] documents, and what is refused names a file, and if a line, one that
 //! the file has. It returns what happened, in words, so that runs can count how much of a parser they reach.
 
+use gonio_io::{ImageError, SceneError, bitmap, hdr};
 use gonio_kernel::Lobe;
-use gonio_tracer::image::{ImageError, Picture, read_exr};
-use gonio_tracer::normal_map::NormalMap;
-use gonio_tracer::scene::{Material, Mesh, Scene, SceneError, Sky};
-use gonio_tracer::texture::Texture;
-use gonio_tracer::{World, hdr};
+use gonio_tracer::scene::{Material, Mesh, Scene, Sky};
+use gonio_tracer::{Picture, World};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -90,24 +88,24 @@ const PNG: [u8; 69] = [
 ];
 
 fn scene(folder: &Path, data: &[u8]) -> String {
-    judge(Scene::load(&write(folder, "fuzz.toml", data)), folder)
+    judge(gonio_io::load(&write(folder, "fuzz.toml", data)), folder)
 }
 
 fn obj(folder: &Path, data: &[u8]) -> String {
     let cut = data.windows(SEPARATOR.len()).position(|window| window == SEPARATOR);
     let (obj, mtl) = cut.map_or((data, &[][..]), |at| (&data[..at], &data[at + SEPARATOR.len()..]));
     write(folder, "fuzz.mtl", mtl);
-    judge(Scene::load(&write(folder, "fuzz.obj", obj)), folder)
+    judge(gonio_io::load(&write(folder, "fuzz.obj", obj)), folder)
 }
 
 fn mtl(folder: &Path, data: &[u8]) -> String {
     write(folder, "fuzz.mtl", data);
-    judge(Scene::load(&folder.join("uses.obj")), folder)
+    judge(gonio_io::load(&folder.join("uses.obj")), folder)
 }
 
 fn exr(folder: &Path, data: &[u8]) -> String {
     let path = write(folder, "fuzz.exr", data);
-    judge_picture(read_exr(&path), &path)
+    judge_picture(gonio_io::exr::read(&path), &path)
 }
 
 fn radiance(folder: &Path, data: &[u8]) -> String {
@@ -128,10 +126,10 @@ fn judge_picture(result: Result<Picture, ImageError>, path: &Path) -> String {
 
 fn texture(folder: &Path, data: &[u8]) -> String {
     let path = write(folder, "fuzz.png", data);
-    if let Ok(map) = NormalMap::load(&path) {
+    if let Ok(map) = bitmap::read_normal_map(&path) {
         assert!((map.sample(0.3, 0.7, 1.0).length() - 1.0).abs() < 1e-5);
     }
-    match Texture::load(&path) {
+    match bitmap::read_texture(&path) {
         Ok(texture) => {
             let color = texture.sample(0.3, 0.7);
             assert!([color.r, color.g, color.b].iter().all(|c| (0.0..=1.0).contains(c)));
@@ -149,7 +147,7 @@ fn directions(folder: &Path, data: &[u8]) -> String {
 fn material(folder: &Path, data: &[u8]) -> String {
     let material = write(folder, "fuzz.toml", data);
     if let Ok(material) =
-        str::from_utf8(data).map_or(Err(()), |text| Material::from_toml_str(text, &material).map_err(drop))
+        str::from_utf8(data).map_or(Err(()), |text| gonio_io::material_from_toml_str(text, &material).map_err(drop))
     {
         assert_material(&material, 0);
     }

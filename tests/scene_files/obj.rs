@@ -2,7 +2,6 @@
 
 use super::{TRIANGLE, refused_obj};
 use crate::support::Folder;
-use gonio_tracer::scene::Scene;
 
 #[test]
 fn indices_out_of_range_are_refused_with_their_line() {
@@ -45,7 +44,7 @@ fn meshes_without_triangles_are_refused() {
 fn triangles_without_area_are_dropped_with_one_warning() {
     let folder = Folder::new();
     let text = format!("usemtl m\n{TRIANGLE}f 1 1 2\nf 1 2 2\nl 1 2 3\n");
-    let scene = Scene::load(&folder.write("flat.obj", text)).unwrap();
+    let scene = gonio_io::load(&folder.write("flat.obj", text)).unwrap();
     assert_eq!(scene.meshes[0].triangles.len(), 1);
     assert_eq!(
         folder.warnings(&scene),
@@ -61,7 +60,7 @@ fn triangles_without_area_are_dropped_with_one_warning() {
 fn normals_that_the_file_does_not_have_are_left_out_with_a_warning() {
     let folder = Folder::new();
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1/7 2/2/8 3/3/9\nf 1/1/7 2/2/8 3/3/9\n";
-    let scene = Scene::load(&folder.write("bare.obj", text)).unwrap();
+    let scene = gonio_io::load(&folder.write("bare.obj", text)).unwrap();
     assert_eq!((&scene.meshes[0].normals, &scene.meshes[0].uvs), (&None, &None));
     assert_eq!(
         folder.warnings(&scene)[..2],
@@ -77,7 +76,7 @@ fn faces_with_and_without_normals_do_not_mix_them_up() {
     let folder = Folder::new();
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 2\nvn 0 1 0\nvt 0 0\nf 1 2 3\nf 1//1 2//1 3//2\n\
                 f 1/1/1 2//1 4\nf 1/1 2/1 3/1\n";
-    let scene = Scene::load(&folder.write("mixed.obj", text)).unwrap();
+    let scene = gonio_io::load(&folder.write("mixed.obj", text)).unwrap();
     let formats: Vec<_> =
         scene.meshes.iter().map(|mesh| (mesh.uvs.is_some(), mesh.normals.is_some(), mesh.triangles.len())).collect();
     assert_eq!(formats, [(false, false, 2), (true, false, 1), (false, true, 1)]);
@@ -94,7 +93,7 @@ fn faces_with_and_without_normals_do_not_mix_them_up() {
 fn files_of_every_age_and_system_are_read() {
     let folder = Folder::new();
     let same = |name: &str, text: &[u8]| {
-        let scene = Scene::load(&folder.write(name, text)).unwrap();
+        let scene = gonio_io::load(&folder.write(name, text)).unwrap();
         assert_eq!(scene.meshes[0].positions, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], "{name}");
         assert_eq!(scene.meshes[0].triangles, [[0, 1, 2]], "{name}");
     };
@@ -112,6 +111,6 @@ fn files_of_every_age_and_system_are_read() {
 fn coordinates_of_a_map_projection_keep_their_digits() {
     let folder = Folder::new();
     let text = "v 680000.001 5400000.002 0\nv 680000.003 5400000.002 0\nv 680000.001 5400000.004 0\nf 1 2 3\n";
-    let scene = Scene::load(&folder.write("far.obj", text)).unwrap();
+    let scene = gonio_io::load(&folder.write("far.obj", text)).unwrap();
     assert_eq!(scene.meshes[0].positions[0], [680_000.001, 5_400_000.002, 0.0]);
 }

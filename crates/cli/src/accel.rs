@@ -5,9 +5,8 @@ mod census;
 
 use crate::census::specimen::Specimen;
 use crate::usage::{Usage, warn};
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::Subcommand;
-use gonio_tracer::scene::Scene;
 use gonio_tracer::{Backend, World};
 use std::path::Path;
 use std::process::ExitCode;
@@ -38,8 +37,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
 /// Loads a scene to cast at.
 fn specimen(path: &Path) -> Result<Specimen> {
-    let scene = Scene::load(path)?;
-    let world = World::new(&scene)?;
+    let scene = gonio_io::load(path)?;
+    let world = World::new(&scene).context("scene")?;
     scene.warnings.iter().chain(world.warnings()).for_each(|warning| warn(warning));
     Ok(Specimen::of_world(&path.display().to_string(), &world))
 }

@@ -13,7 +13,6 @@ use anyhow::{Context, Result, anyhow};
 use clap::{Subcommand, ValueEnum};
 use gonio_kernel::{F32x8, Parameters};
 use gonio_tracer::constant_surface;
-use gonio_tracer::scene::Material;
 use model::Model;
 use std::path::Path;
 use std::process::ExitCode;
@@ -59,7 +58,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 /// Reads a material file and prepares it for the wanted arithmetic.
 fn load(path: &Path, precision: Precision) -> Result<Box<dyn Model>> {
     let text = std::fs::read_to_string(path).with_context(|| format!("{}: cannot be read", path.display()))?;
-    let material = Material::from_toml_str(&text, path)?;
+    let material = gonio_io::material_from_toml_str(&text, path)?;
     let surface = constant_surface(&material)
         .ok_or_else(|| anyhow!("{}: a material with images cannot be evaluated by itself", path.display()))?;
     Ok(match precision {

@@ -10,7 +10,6 @@ use crate::usage::spinner;
 use anyhow::{Context, Result, anyhow};
 use count::{Count, count};
 use gonio_lab::{Call, Certificate, Effort, Options, certify};
-use gonio_tracer::scene::Material;
 use gonio_tracer::{MaterialSurface, constant_surface};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -112,7 +111,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 /// Name and surface of a material file.
 fn load(path: &Path) -> Result<(String, MaterialSurface<f32>)> {
     let text = std::fs::read_to_string(path).with_context(|| format!("{}: cannot be read", path.display()))?;
-    let material = Material::from_toml_str(&text, path)?;
+    let material = gonio_io::material_from_toml_str(&text, path)?;
     let surface = constant_surface(&material)
         .ok_or_else(|| anyhow!("{}: a material with images cannot be certified by itself", path.display()))?;
     Ok((material.name, surface))

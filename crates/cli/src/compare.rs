@@ -7,7 +7,9 @@ mod measure;
 use crate::output::{Target, extension, write_text};
 use crate::usage::Usage;
 use anyhow::Result;
-use gonio_tracer::image::{Metadata, Picture, read_picture, write_exr, write_png};
+use gonio_io::exr::{self, Metadata};
+use gonio_io::{png, read_picture};
+use gonio_tracer::Picture;
 use measure::{Difference, difference, magnified};
 use serde_json::json;
 use std::fmt::Write;
@@ -83,11 +85,11 @@ fn write_difference(path: &Path, a: &Picture, found: &Difference) -> Result<()> 
         "exr" => {
             let version = env!("CARGO_PKG_VERSION").to_owned();
             let metadata = Metadata { version, ..Metadata::default() };
-            Ok(write_exr(path, &found.picture, None, &metadata)?)
+            Ok(exr::write(path, &found.picture, None, &metadata)?)
         }
         "png" => {
             let (picture, gain) = magnified(a, &found.picture);
-            write_png(path, &picture, 0.0)?;
+            png::write(path, &picture, 0.0)?;
             eprintln!("{}: B − A over the mean of A, times {gain:.3}, around mid grey", path.display());
             Ok(())
         }

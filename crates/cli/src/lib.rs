@@ -1,6 +1,6 @@
 //! The command line of Gonio: `gonio render`, `compare`, `bsdf`, `certify`, `accel` and `validate`.
 //!
-//! One file per subcommand, and no physics: scenes and pictures belong to `gonio-tracer`, scattering to `gonio-kernel`,
+//! One file per subcommand, and no physics: scenes and pictures belong to `gonio-tracer`, their files to `gonio-io`, scattering to `gonio-kernel`,
 //! its instruments to `gonio-lab`. What is here reads arguments, hands them on, and writes what comes back.
 //!
 //! Results go to files or standard output, everything else (warnings, progress, errors) to standard error. A file appears

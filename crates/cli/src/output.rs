@@ -1,7 +1,7 @@
 //! Where results go: standard output for `-`, else a file that appears whole or not at all.
 
 use anyhow::{Context, Result};
-use gonio_tracer::whole_file::WholeFile;
+use gonio_io::whole_file::WholeFile;
 use std::convert::Infallible;
 use std::fmt;
 use std::io::{self, BufWriter, Stdout, Write};

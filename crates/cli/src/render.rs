@@ -7,7 +7,7 @@ mod stats;
 use crate::output::{Output, Target, extension, probe, write_text};
 use crate::signals;
 use crate::usage::{Usage, several, warn};
-use anyhow::Result;
+use anyhow::{Context, Result};
 use gonio_accel::Intersect;
 use gonio_tracer::scene::Scene;
 use gonio_tracer::{Backend, Crop, RenderSettings, World};
@@ -83,12 +83,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     check_outputs(args)?;
     let start = Instant::now();
     let mut report = progress::Report::new(args.progress);
-    let mut scene = Scene::load_with(&args.scene, &mut |loading| report.loading(&loading))?;
+    let mut scene = gonio_io::load_with(&args.scene, &mut |loading| report.loading(&loading))?;
     if let Some([width, height]) = args.size {
         (scene.film.width, scene.film.height) = (width, height);
     }
     check_crop(args, &scene)?;
-    let world = World::take(&mut scene, &mut |loading| report.loading(&loading))?;
+    let world = World::take(&mut scene, &mut |loading| report.loading(&loading)).context("scene")?;
     report.finish();
     let load_seconds = start.elapsed().as_secs_f64();
     let mut warnings: Vec<&str> = Vec::new();

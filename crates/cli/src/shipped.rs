@@ -28,5 +28,5 @@ pub(crate) fn unpack(files: Files, folder: &Path) -> Result<Scene> {
         let path = folder.join(name);
         std::fs::write(&path, text).with_context(|| format!("{}: cannot be written", path.display()))?;
     }
-    Ok(Scene::load(&folder.join(files[0].0))?)
+    Ok(gonio_io::load(&folder.join(files[0].0))?)
 }

@@ -33,7 +33,7 @@ pub(crate) fn listen() -> std::io::Result<()> {
             if has_passes && signal == SIGHUP {
                 SHOW.store(true, Ordering::SeqCst);
             } else if !has_passes || STOP.swap(true, Ordering::SeqCst) {
-                gonio_tracer::whole_file::discard_unfinished();
+                gonio_io::whole_file::discard_unfinished();
                 signal_hook::low_level::exit(QUIT);
             }
         }

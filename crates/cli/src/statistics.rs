@@ -5,7 +5,7 @@
 //! compared with what is expected by Student's t, its error estimated from the spread of its own pixels. The blocks find a
 //! fault in one corner, the whole finds a small one everywhere.
 
-use gonio_tracer::image::Picture;
+use gonio_tracer::Picture;
 use statrs::function::beta::beta_reg;
 
 /// Pixels along the edge of a block.

@@ -26,7 +26,7 @@
 
 use crate::alias::{alias_table, pick};
 use crate::fingerprint::Fingerprint;
-use crate::image::Picture;
+use crate::picture::Picture;
 use crate::sampler::Random4;
 use gonio_kernel::math::{atan2_turns, sin_cos_turns};
 use gonio_kernel::{F32x8, Real, Rgb, U32x8, Vec3, each_lane};

@@ -1,22 +1,50 @@
-//! The path tracer of Gonio: scene in, image out.
+//! The path tracer of Gonio: a scene in memory in, a picture in memory out. Files belong to the crate `gonio-io`.
 //!
 //! The modules, in the order in which data flows through them:
 //!
-//! [`scene`] (files to plain data) → [`world`] (placed, recentred, with [`Plan`] and lights) → a [`Backend`] casts its rays
+//! [`scene`] (plain data) → [`world`] (placed, recentred, with [`Plan`] and lights) → a [`Backend`] casts its rays
 //! → [`render`] drives queues of path states through generate, closest hit, sort, shade and shadow stages → the film adds
-//! samples as integers → [`image`] writes the picture.
+//! samples as integers → a [`Picture`].
 //!
-//! ```no_run
+//! A square under a white sky, seen from the front:
+//!
+//! ```
 //! use std::ops::ControlFlow;
 //!
+//! use glam::{DAffine3, DVec3};
 //! use gonio_accel::Intersect;
-//! use gonio_tracer::{Backend, RenderSettings, World, render, scene::Scene};
+//! use gonio_kernel::{Rgb, lobe::Lambert};
+//! use gonio_tracer::scene::{
+//!     CameraSpec, Environment, FilmSettings, Instance, IntegratorSettings, LobeSpec, Material, Mesh, Scene,
+//! };
+//! use gonio_tracer::{Backend, RenderSettings, World, render};
 //!
-//! let scene = Scene::load("scenes/cornell-box.toml".as_ref())?;
+//! let square = Mesh {
+//!     name: "square".to_owned(),
+//!     positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]],
+//!     triangles: vec![[0, 1, 2], [0, 2, 3]],
+//!     materials: vec![0, 0],
+//!     ..Mesh::default()
+//! };
+//! let front = CameraSpec { origin: Some(DVec3::new(0.0, 0.0, 5.0)), ..CameraSpec::default() };
+//! let scene = Scene {
+//!     film: FilmSettings { width: 8, height: 8, spp: 16, exposure: 0.0 },
+//!     camera: front.complete([DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.0)], 1.0)?,
+//!     integrator: IntegratorSettings::default(),
+//!     materials: vec![Material::new("grey", vec![LobeSpec::new(Lambert::new(Rgb::splat(0.5)))])],
+//!     textures: Vec::new(),
+//!     normal_maps: Vec::new(),
+//!     meshes: vec![square],
+//!     instances: vec![Instance { name: "square".to_owned(), mesh: 0, transform: DAffine3::IDENTITY }],
+//!     environment: Environment::constant(Rgb::splat(1.0)),
+//!     warnings: Vec::new(),
+//! };
 //! let world = World::new(&scene)?;
 //! let accel = Backend::Obvhs.build(world.geometry(), Intersect::Robust)?;
 //! let rendering = render(&world, &*accel, &RenderSettings::of(&scene, &world), &mut |_| ControlFlow::Continue(()));
-//! println!("{}", rendering.stats.film_hash);
+//! // In the middle half of the light comes back, at the edge the sky is seen.
+//! assert!((rendering.picture.rgb[4 * 8 + 4][0] - 0.5).abs() < 1e-5);
+//! assert_eq!(rendering.picture.rgb[0][0], 1.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 #![forbid(unsafe_code)]
@@ -30,14 +58,14 @@ compile_error!(
 mod alias;
 mod backend;
 mod environment;
+mod error;
 mod film;
 mod fingerprint;
-pub mod hdr;
-pub mod image;
 mod layers;
 mod light;
 mod material;
 pub mod normal_map;
+mod picture;
 mod plan;
 mod point;
 mod queue;
@@ -47,13 +75,14 @@ pub mod scene;
 mod shade;
 mod stats;
 pub mod texture;
-pub mod whole_file;
 pub mod world;
 
 pub use backend::{Backend, BackendError};
+pub use error::WorldError;
 pub use layers::Layers;
 pub use light::Techniques;
-pub use material::{BatchBsdf, CustomLobe, MaterialSurface, Scattered, constant_surface};
+pub use material::{BatchBsdf, CustomLobe, MOST_COATS, MOST_LOBES, MaterialSurface, Scattered, constant_surface};
+pub use picture::Picture;
 pub use plan::Plan;
 pub use point::SurfacePoint;
 pub use render::{Crop, Pass, Progress, RenderSettings, Rendering, render};

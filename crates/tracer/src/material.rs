@@ -8,6 +8,7 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
+use crate::error::WorldError;
 use crate::scene::{LobeSpec, Material, NormalMapSpec, Scene, TexturedParameter};
 use crate::texture::Texture;
 use gonio_kernel::lobe::{AnyLobe, Weighted};
@@ -18,10 +19,10 @@ use gonio_kernel::{BsdfSample, Closure, F32x8, Lobe, Parameters, Real, Rgb, Surf
 type Kernel = AnyLobe<'static, f32>;
 /// And in eight lanes.
 type Kernel8 = AnyLobe<'static, F32x8>;
-/// How many lobes a material may have.
-pub(crate) const MOST_LOBES: usize = 12;
-/// And how many of them may be coats.
-pub(crate) const MOST_COATS: usize = 3;
+/// How many lobes a [`Material`] may have.
+pub const MOST_LOBES: usize = 12;
+/// How many lobes of a [`Material`] may be coats.
+pub const MOST_COATS: usize = 3;
 
 /// A surface with room for any material: twelve lobes, three of them coats.
 pub type MaterialSurface<R> = Surface<R, AnyLobe<'static, R>, MOST_LOBES, MOST_COATS>;
@@ -119,11 +120,11 @@ impl PreparedMaterial {
     /// The materials in the order of their variants, and where each of the scene's went.
     ///
     /// # Errors
-    /// A sentence: a material's lobes do not fit into a surface.
-    pub(crate) fn prepare(scene: &Scene) -> Result<(Vec<Self>, Vec<u32>), String> {
+    /// A material's lobes do not fit into a surface.
+    pub(crate) fn prepare(scene: &Scene) -> Result<(Vec<Self>, Vec<u32>), WorldError> {
         for material in &scene.materials {
             let fits = surface::<f32, MOST_LOBES, MOST_COATS>(&material.lobes, |spec, _| (spec.weight, spec.lobe));
-            fits.map_err(|why| format!("material \"{}\": {why}", material.name))?;
+            fits.map_err(|why| WorldError::Lobes { material: material.name.clone(), why })?;
         }
         // Variants have no order of their own: they are numbered as the scene first shows them.
         let mut variants: Vec<&Material> = Vec::new();

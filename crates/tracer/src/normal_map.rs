@@ -4,37 +4,20 @@
 //! image), blue along the shading normal; the numbers are linear, whatever the file says of its curve. What a tilted frame
 //! then means is in [`gonio_kernel::frame`]. Texels are kept in 16 bits, which hold 8-bit values exactly (257·c of 65535).
 
-use std::path::Path;
-
 use gonio_kernel::Vec3;
 
-use crate::texture::{blend, open};
+use crate::texture::blend;
 
 /// An image of normals, at least one texel in size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NormalMap {
     width: u32,
     height: u32,
-    /// Rows from the top, as in the file.
+    /// Rows from the top.
     texels: Vec<[u16; 3]>,
 }
 
 impl NormalMap {
-    /// Decodes a PNG of eight or sixteen bits per channel, or a JPEG.
-    ///
-    /// # Errors
-    /// A sentence without the file's name: it cannot be opened, is not a PNG or JPEG, is corrupt or too large, or is grey.
-    pub fn load(path: &Path) -> Result<Self, String> {
-        let image = open(path)?;
-        if !image.color().has_color() {
-            return Err("is grey: a normal map has three channels, and a height map is no normal map".to_owned());
-        }
-        let image = image.into_rgb16();
-        let (width, height) = image.dimensions();
-        let texels = image.pixels().map(|pixel| pixel.0).collect();
-        Self::from_linear16(width, height, texels).ok_or_else(|| "has no pixels".to_owned())
-    }
-
     /// A normal map from 16-bit texels, rows from the top; `None` unless there are `width * height` > 0 of them.
     #[must_use]
     pub fn from_linear16(width: u32, height: u32, texels: Vec<[u16; 3]>) -> Option<Self> {

@@ -6,9 +6,9 @@
 //! pixel has the same number of samples: the caller may look at the picture, and may stop.
 
 use crate::film::{self, Pixel};
-use crate::image::Picture;
 use crate::layers::{DepthUnit, FirstHit, LayerSums, Layers};
 use crate::light::Techniques;
+use crate::picture::Picture;
 use crate::plan::Plan;
 use crate::queue::{Batch, Order, Paths, Queue, ShadowQueue};
 use crate::sampler::{Purpose, Sampler};

@@ -1,10 +1,9 @@
-//! Images on surfaces: decoded once, kept in eight bits, filtered bilinearly in linear light.
+//! Images on surfaces: kept in eight bits, filtered bilinearly in linear light.
 //!
 //! The sRGB curve is IEC 61966-2-1. Texels stay 8-bit (a quarter of the memory of f32) and pass through a table of 256
 //! entries at every look-up, so filtering happens in linear light and not on encoded values.
 //! Coordinates follow the OBJ convention: (0, 0) is the lower left corner of the image, and the image repeats.
 
-use std::path::Path;
 use std::sync::LazyLock;
 
 use gonio_kernel::Rgb;
@@ -14,22 +13,11 @@ use gonio_kernel::Rgb;
 pub struct Texture {
     width: u32,
     height: u32,
-    /// Rows from the top, as in the file.
+    /// Rows from the top.
     texels: Vec<[u8; 3]>,
 }
 
 impl Texture {
-    /// Decodes a PNG or JPEG file as sRGB colour.
-    ///
-    /// Sixteen-bit images are rounded to eight bits, grey becomes three equal channels, alpha is left out.
-    ///
-    /// # Errors
-    /// A sentence without the file's name: it cannot be opened, is not a PNG or JPEG, is corrupt or too large.
-    pub fn load(path: &Path) -> Result<Self, String> {
-        let (width, height, texels) = decode_srgb8(path)?;
-        Self::from_srgb8(width, height, texels).ok_or_else(|| "has no pixels".to_owned())
-    }
-
     /// A texture from 8-bit sRGB texels, rows from the top; `None` unless there are `width * height` > 0 of them.
     #[must_use]
     pub fn from_srgb8(width: u32, height: u32, texels: Vec<[u8; 3]>) -> Option<Self> {
@@ -70,22 +58,6 @@ impl Texture {
     }
 }
 
-/// Width, height and 8-bit sRGB pixels of a PNG or JPEG file, rows from the top; see [`Texture::load`].
-pub(crate) fn decode_srgb8(path: &Path) -> Result<(u32, u32, Vec<[u8; 3]>), String> {
-    let image = open(path)?.into_rgb8();
-    let (width, height) = image.dimensions();
-    Ok((width, height, image.pixels().map(|pixel| pixel.0).collect()))
-}
-
-/// A PNG or JPEG file, decoded as it is.
-pub(crate) fn open(path: &Path) -> Result<image::DynamicImage, String> {
-    image::ImageReader::open(path)
-        .and_then(image::ImageReader::with_guessed_format)
-        .map_err(|error| format!("cannot be read: {error}"))?
-        .decode()
-        .map_err(|error| format!("cannot be decoded: {error}"))
-}
-
 /// Bilinear between the centres of `texel(column, row)` in an image that repeats; rows run downwards, v = 0 is the bottom.
 #[inline]
 pub(crate) fn blend([width, height]: [u32; 2], [u, v]: [f32; 2], texel: impl Fn(u32, u32) -> [f32; 3]) -> [f32; 3] {
@@ -110,8 +82,14 @@ fn mix(a: [f32; 3], b: [f32; 3], t: f32) -> [f32; 3] {
     std::array::from_fn(|i| a[i] * (1.0 - t) + b[i] * t)
 }
 
+/// The linear light of an 8-bit sRGB value, in [0, 1].
+#[must_use]
+pub fn linear_from_srgb8(byte: u8) -> f32 {
+    SRGB_TO_LINEAR[usize::from(byte)]
+}
+
 /// IEC 61966-2-1, decoding; computed in f64 so that every entry is the nearest f32.
-pub(crate) static SRGB_TO_LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
+static SRGB_TO_LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
     std::array::from_fn(|byte| {
         let encoded = byte as f64 / 255.0;
         let linear = if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) };

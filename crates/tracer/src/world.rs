@@ -8,18 +8,18 @@
 //! corners and normals are moved to the world wherever a ray meets them. The front of a mirrored instance stays the front: its
 //! triangles swap two corners, or where a mesh is kept once, its normals turn.
 
+use crate::error::WorldError;
 use crate::fingerprint::Fingerprint;
 use crate::light::{Emitter, Lights};
 use crate::material::PreparedMaterial;
 use crate::normal_map::NormalMap;
 use crate::plan::Plan;
-use crate::scene::{Camera, FilmSettings, Instance, Loading, Mesh, Scene, SceneError, Stage};
+use crate::scene::{Camera, FilmSettings, Instance, Loading, Mesh, Scene, Stage};
 use crate::texture::Texture;
 use glam::{DMat3, DVec3};
 use gonio_accel::{Geometry, GeometryError, Ray8, Sharing};
 use gonio_kernel::{F32x8, Real, Rgb, Vec3};
 use std::borrow::Cow;
-use std::path::Path;
 
 /// A scene made ready: geometry, shading data, lights, camera and plan.
 #[derive(Clone, Debug)]
@@ -97,8 +97,8 @@ impl World {
     /// Places the scene. O(triangles).
     ///
     /// # Errors
-    /// If the scene cannot be cast at: too many triangles, or positions that overflow `f32`.
-    pub fn new(scene: &Scene) -> Result<Self, SceneError> {
+    /// A material's lobes do not fit into a surface, or rays cannot be cast at the scene: see [`WorldError`].
+    pub fn new(scene: &Scene) -> Result<Self, WorldError> {
         Self::by(scene, Sharing::default())
     }
 
@@ -106,7 +106,7 @@ impl World {
     ///
     /// # Errors
     /// As [`World::new`].
-    pub fn by(scene: &Scene, sharing: Sharing) -> Result<Self, SceneError> {
+    pub fn by(scene: &Scene, sharing: Sharing) -> Result<Self, WorldError> {
         let images = (scene.textures.clone(), scene.normal_maps.clone());
         Self::place(scene, Cow::Borrowed(&scene.meshes[..]), images, sharing, &mut |_| ())
     }
@@ -115,8 +115,8 @@ impl World {
     /// the memory. `progress` is told how many triangles are placed.
     ///
     /// # Errors
-    /// If the scene cannot be cast at: too many triangles, or positions that overflow `f32`.
-    pub fn take(scene: &mut Scene, progress: &mut dyn FnMut(Loading)) -> Result<Self, SceneError> {
+    /// A material's lobes do not fit into a surface, or rays cannot be cast at the scene: see [`WorldError`].
+    pub fn take(scene: &mut Scene, progress: &mut dyn FnMut(Loading)) -> Result<Self, WorldError> {
         let images = (std::mem::take(&mut scene.textures), std::mem::take(&mut scene.normal_maps));
         let meshes = std::mem::take(&mut scene.meshes);
         Self::place(scene, Cow::Owned(meshes), images, Sharing::default(), progress)
@@ -128,11 +128,10 @@ impl World {
         (textures, normal_maps): (Vec<Texture>, Vec<NormalMap>),
         sharing: Sharing,
         progress: &mut dyn FnMut(Loading),
-    ) -> Result<Self, SceneError> {
-        let refuse = |message: String| SceneError::file(Path::new("scene"), message);
+    ) -> Result<Self, WorldError> {
         let center = center(&scene.instances, &meshes);
         let mut warnings = Vec::new();
-        let (materials, order) = PreparedMaterial::prepare(scene).map_err(refuse)?;
+        let (materials, order) = PreparedMaterial::prepare(scene)?;
         let mut plan = Plan {
             area_lights: false,
             environment: false,
@@ -158,7 +157,7 @@ impl World {
         let mut world = Self {
             film: scene.film,
             view: View::new(&scene.camera, &scene.film, center),
-            geometry: Geometry::new(Vec::new(), Vec::new()).map_err(|e| refuse(e.to_string()))?,
+            geometry: Geometry::new(Vec::new(), Vec::new())?,
             offsets: Vec::new(),
             placements: Vec::new(),
             vertices: 0,
@@ -176,7 +175,7 @@ impl World {
         scene.instances.iter().for_each(|instance| uses[instance.mesh] += 1);
         let of = scene.instances.iter().map(|instance| meshes[instance.mesh].triangles.len()).sum::<usize>();
         if of > Geometry::MOST_TRIANGLES {
-            return Err(refuse(GeometryError::TooMany(of).to_string()));
+            return Err(GeometryError::TooMany(of).into());
         }
         let mut kept: Vec<Option<Kept>> =
             uses.iter().map(|&uses| sharing.shares(of, uses).then(Kept::default)).collect();
@@ -201,7 +200,7 @@ impl World {
             }
             progress(Loading { stage: Stage::Placing, done, of: of as u64 });
         }
-        world.geometry = Geometry::new(casting, instances).map_err(|e| refuse(e.to_string()))?;
+        world.geometry = Geometry::new(casting, instances)?;
 
         let emitter = |(instance, prim): (u32, u32)| {
             let radiance = world.materials[world.material(instance, prim) as usize].emission;

@@ -1,6 +1,7 @@
 //! FLIP (Andersson et al. 2020): how different two pictures look when one flips between them, from 0 to 1.
 
-use gonio_tracer::image::{Picture, srgb8};
+use gonio_io::png::srgb8;
+use gonio_tracer::Picture;
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool};
 
 /// The mean over the pictures as they look on a screen: clamped, sRGB, 0.7 m from a monitor of usual size.

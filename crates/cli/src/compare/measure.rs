@@ -1,7 +1,7 @@
 //! What is measured of a difference.
 
 use crate::statistics::{level, test_blocks, tests};
-use gonio_tracer::image::Picture;
+use gonio_tracer::Picture;
 
 /// Keeps relMSE finite where the reference is black (Rousselle et al. 2011).
 const EPSILON: f64 = 0.01;

@@ -4,7 +4,8 @@ use super::stats::Times;
 use crate::output::{Target, extension, write_all};
 use anyhow::{Result, anyhow};
 use gonio_accel::Intersect;
-use gonio_tracer::image::{Metadata, Window, encode_exr, encode_png};
+use gonio_io::exr::{self, Metadata, Window};
+use gonio_io::png;
 use gonio_tracer::scene::Scene;
 use gonio_tracer::{Backend, RenderSettings, Rendering};
 use std::cell::LazyCell;
@@ -50,8 +51,8 @@ pub(super) fn write_or_rescue(targets: &[Target], origin: &Origin, rendering: &R
 
 fn write_one(target: &Target, origin: &Origin, rendering: &Rendering) -> Result<()> {
     let encoded = match target {
-        Target::File(path) if extension(path) == "png" => encode_png(&rendering.picture, origin.scene.film.exposure),
-        _ => encode_exr(&rendering.picture, rendering.layers.as_ref(), &metadata(origin, rendering)),
+        Target::File(path) if extension(path) == "png" => png::encode(&rendering.picture, origin.scene.film.exposure),
+        _ => exr::encode(&rendering.picture, rendering.layers.as_ref(), &metadata(origin, rendering)),
     };
     write_all(target, &encoded.map_err(|why| anyhow!("{target}: {why}"))?)
 }

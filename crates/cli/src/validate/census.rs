@@ -14,7 +14,7 @@ use crate::census::specimen::Specimen;
 use crate::census::{Plan, Standard, Witness};
 use crate::random::seed_for;
 use crate::shipped::{CORNELL_BOX, unpack};
-use anyhow::Result;
+use anyhow::{Context, Result};
 use gonio_accel::Intersect;
 use gonio_lab::{Check, Effort, Options, Outcome};
 use gonio_tracer::{Backend, World};
@@ -39,7 +39,8 @@ const FAULT_RAYS: u64 = 1 << 11;
 pub(super) fn run(options: &Options, out: &Path, sink: &mut dyn FnMut(Check)) -> Result<Log> {
     let mut log = Log::default();
     let mut all = specimens();
-    all.push(Specimen::of_world("cornell-box", &World::new(&unpack(CORNELL_BOX, &out.join("scenes"))?)?));
+    let scene = unpack(CORNELL_BOX, &out.join("scenes"))?;
+    all.push(Specimen::of_world("cornell-box", &World::new(&scene).context("scene")?));
     for specimen in &all {
         measure(specimen, options, &mut log, sink)?;
     }

@@ -4,8 +4,8 @@
 //! that is needed.
 
 use super::html::{base64, escape};
+use gonio_io::png::encode_rgb8;
 use gonio_lab::plots::{Axis, Colours, Figure, Histogram, Map, Plot};
-use gonio_tracer::image::encode_rgb8;
 use std::fmt::Write;
 
 /// Size of a drawing and of the space around its plot, in units of the view box.

@@ -19,9 +19,9 @@ use super::{SIGNIFICANCE, wanted};
 use crate::statistics::{Worst, level, tests, worst_block};
 use anyhow::{Context, Result};
 use furnace::{FURNACES, Furnace, Shot};
+use gonio_io::png;
 use gonio_lab::{Check, Effort, Options, Outcome};
-use gonio_tracer::image::{Picture, write_png};
-use gonio_tracer::{Backend, Plan};
+use gonio_tracer::{Backend, Picture, Plan};
 use std::path::Path;
 use std::time::Instant;
 
@@ -279,7 +279,7 @@ fn exhibit(
     }
     let save = |name: String, picture: &Picture, exposure: f32| -> Result<Vec<u8>> {
         let path = out.join(name);
-        write_png(&path, picture, exposure)?;
+        png::write(&path, picture, exposure)?;
         std::fs::read(&path).with_context(|| format!("{}: cannot be read", path.display()))
     };
     let [r, g, b] = expected;

@@ -1,8 +1,7 @@
-//! The camera of a scene that has none, and the parts of it that a scene leaves open.
+//! The camera, and what it is where a scene leaves it open: a view of everything.
 
 use glam::{DMat4, DVec3};
-
-use super::Camera;
+use thiserror::Error;
 
 /// Vertical field of view in degrees: about a 50 mm lens on 35 mm film held upright.
 const VFOV: f64 = 40.0;
@@ -11,32 +10,71 @@ const THREE_QUARTER: DVec3 = DVec3::new(0.6, 0.45, 1.0);
 /// Room around the scene.
 const MARGIN: f64 = 1.08;
 
-/// What a scene says about its camera.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct CameraSpec {
-    pub(super) origin: Option<DVec3>,
-    pub(super) target: Option<DVec3>,
-    pub(super) up: Option<DVec3>,
-    pub(super) vfov: Option<f64>,
+/// A pinhole camera. `up` is not parallel to the view direction, and `target` is not `origin`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Position, in metres.
+    pub origin: DVec3,
+    /// A point that appears at the centre of the picture, in metres.
+    pub target: DVec3,
+    /// Points towards the top of the picture; any length above 0.
+    pub up: DVec3,
+    /// Vertical field of view in degrees, above 0 and below 180.
+    pub vfov: f64,
+}
+
+/// What a scene says about its camera; what is `None` follows from the scene's bounds.
+///
+/// ```
+/// use glam::DVec3;
+/// use gonio_tracer::scene::CameraSpec;
+///
+/// let camera = CameraSpec::default().complete([DVec3::ZERO, DVec3::ONE], 4.0 / 3.0)?;
+/// assert_eq!(camera.target, DVec3::splat(0.5));
+/// # Ok::<(), gonio_tracer::scene::CameraError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CameraSpec {
+    /// Position, in metres; otherwise a place from which all of the scene is seen.
+    pub origin: Option<DVec3>,
+    /// A point that appears at the centre of the picture, in metres; otherwise the middle of the scene.
+    pub target: Option<DVec3>,
+    /// Points towards the top of the picture; otherwise +y.
+    pub up: Option<DVec3>,
+    /// Vertical field of view in degrees; otherwise 40.
+    pub vfov: Option<f64>,
+}
+
+/// Why a camera has no view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum CameraError {
+    /// It looks nowhere.
+    #[error("\"origin\" and \"target\" of the camera are the same point")]
+    NoDirection,
+    /// The top of the picture is nowhere.
+    #[error("\"up\" of the camera has no length")]
+    NoUp,
+    /// The top of the picture is anywhere.
+    #[error("\"up\" of the camera is parallel to the view direction")]
+    UpAlongView,
 }
 
 impl CameraSpec {
-    /// Fills in the rest: the target is the middle of the scene, the origin a place from which all of it is seen.
-    ///
-    /// `aspect` is width over height.
+    /// Fills in the rest. `bounds` are the least and the largest coordinates of the scene in the world, `aspect` is width
+    /// over height.
     ///
     /// # Errors
-    /// A sentence: the view direction has no length, or `up` is parallel to it.
-    pub(super) fn complete(self, bounds: [DVec3; 2], aspect: f64) -> Result<Camera, String> {
+    /// The view direction has no length, or `up` has none or is parallel to it.
+    pub fn complete(self, bounds: [DVec3; 2], aspect: f64) -> Result<Camera, CameraError> {
         let up = self.up.unwrap_or(DVec3::Y);
         let vfov = self.vfov.unwrap_or(VFOV);
         let target = self.target.unwrap_or((bounds[0] + bounds[1]) * 0.5);
         let origin = self.origin.unwrap_or_else(|| framing(target, up, vfov, bounds, aspect));
-        let view =
-            (target - origin).try_normalize().ok_or("\"origin\" and \"target\" of the camera are the same point")?;
-        let sideways = view.cross(up.try_normalize().ok_or("\"up\" of the camera has no length")?);
+        let view = (target - origin).try_normalize().ok_or(CameraError::NoDirection)?;
+        let sideways = view.cross(up.try_normalize().ok_or(CameraError::NoUp)?);
         if sideways.length() < 1e-6 {
-            return Err("\"up\" of the camera is parallel to the view direction".to_owned());
+            return Err(CameraError::UpAlongView);
         }
         Ok(Camera { origin, target, up, vfov })
     }
@@ -135,8 +173,8 @@ mod tests {
     fn a_camera_without_a_direction_is_refused() {
         let bounds = [DVec3::ZERO, DVec3::ONE];
         let same = CameraSpec { origin: Some(DVec3::ONE), target: Some(DVec3::ONE), ..CameraSpec::default() };
-        assert!(same.complete(bounds, 1.0).unwrap_err().contains("same point"));
+        assert_eq!(same.complete(bounds, 1.0), Err(CameraError::NoDirection));
         let above = CameraSpec { origin: Some(DVec3::Y), target: Some(DVec3::ZERO), ..CameraSpec::default() };
-        assert!(above.complete(bounds, 1.0).unwrap_err().contains("parallel"));
+        assert_eq!(above.complete(bounds, 1.0), Err(CameraError::UpAlongView));
     }
 }

@@ -1,14 +1,9 @@
 //! The scene: everything a picture depends on, as plain data.
 //!
-//! A scene comes from a TOML scene file (`docs/scene-format.md` lists every key with its unit and default) or from an
-//! OBJ file alone, which then gets an automatic camera and a white sky. Whatever leaves this module is checked: all
-//! numbers are finite and in their ranges, all indices point at something, every mesh has a triangle with an area.
-//! Bad input is a [`SceneError`] that names file and line; what a viewer would tolerate is loaded with a sentence in
-//! [`Scene::warnings`].
+//! A scene is built in code or read from files by the crate `gonio-io`. Each field states its range: all numbers are finite,
+//! all indices point at something, every mesh has a triangle with an area.
 
-use std::path::Path;
-
-use glam::{DAffine3, DVec3};
+use glam::DAffine3;
 use gonio_kernel::lobe::{AnyLobe, Layering};
 use gonio_kernel::{Parameters, Rgb};
 
@@ -16,65 +11,13 @@ use crate::material::CustomLobe;
 use crate::normal_map::NormalMap;
 use crate::texture::Texture;
 
-mod build;
 mod camera;
-mod document;
 mod environment;
-mod error;
-mod file;
-mod material;
-mod mtl;
-mod nesting;
-mod obj;
-mod paths;
-mod textures;
-mod transform;
 
+pub use camera::{Camera, CameraError, CameraSpec};
 pub use environment::{Environment, Sky, SkyMap};
-pub use error::SceneError;
 /// Largest radiance a material or the environment may have: the film's range ends a little above.
-pub(crate) const MAX_RADIANCE: f64 = 1e6;
-
-impl Scene {
-    /// Reads a scene file (`.toml`), or an OBJ file alone (`.obj`) under a white sky with an automatic camera.
-    ///
-    /// # Errors
-    /// Anything that cannot be rendered as written, with file and line.
-    pub fn load(path: &Path) -> Result<Self, SceneError> {
-        Self::load_with(path, &mut |_| ())
-    }
-
-    /// Like [`Scene::load`]; `progress` is told how much of each OBJ file is read.
-    ///
-    /// # Errors
-    /// Anything that cannot be rendered as written, with file and line.
-    pub fn load_with(path: &Path, progress: &mut dyn FnMut(Loading)) -> Result<Self, SceneError> {
-        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-        match extension.to_ascii_lowercase().as_str() {
-            "toml" => file::read(&paths::read_text(path)?, path, progress),
-            "obj" => Self::from_obj(path, progress),
-            _ => Err(SceneError::file(path, "is neither a scene file (.toml) nor an OBJ file (.obj)")),
-        }
-    }
-
-    /// Reads a scene file from its text; files it names are looked for beside `path`.
-    ///
-    /// # Errors
-    /// Anything that cannot be rendered as written, with file and line.
-    pub fn from_toml_str(text: &str, path: &Path) -> Result<Self, SceneError> {
-        file::read(text, path, &mut |_| ())
-    }
-
-    fn from_obj(path: &Path, progress: &mut dyn FnMut(Loading)) -> Result<Self, SceneError> {
-        let mut builder = build::Builder::default();
-        let blame = |why: String| SceneError::at(path, 1, why);
-        builder.place(path, &build::Assignment::default(), DAffine3::IDENTITY, blame, progress)?;
-        let film = FilmSettings::default();
-        let aspect = f64::from(film.width) / f64::from(film.height);
-        let camera = camera::CameraSpec::default().complete(builder.bounds, aspect).map_err(blame)?;
-        Ok(builder.finish(film, camera, IntegratorSettings::default(), Environment::constant(Rgb::splat(1.0))))
-    }
-}
+pub const MAX_RADIANCE: f64 = 1e6;
 
 /// How far a scene has come on its way to being rendered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,7 +33,7 @@ pub struct Loading {
 /// What is done between the scene file and the first ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// [`Scene::load_with`] reads an OBJ file; bytes. A scene of several files begins again for each.
+    /// A mesh is read from its file; bytes. A scene of several files begins again for each.
     Reading,
     /// [`World::take`](crate::World::take) places the meshes; triangles.
     Placing,
@@ -98,7 +41,7 @@ pub enum Stage {
     Building,
 }
 
-/// A scene, checked and ready to be planned and rendered.
+/// A scene, ready to be planned and rendered.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// Size of the picture and number of samples.
@@ -136,17 +79,10 @@ pub struct FilmSettings {
     pub exposure: f32,
 }
 
-/// A pinhole camera. `up` is not parallel to the view direction, and `target` is not `origin`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Camera {
-    /// Position, in metres.
-    pub origin: DVec3,
-    /// A point that appears at the centre of the picture, in metres.
-    pub target: DVec3,
-    /// Points towards the top of the picture; any length above 0.
-    pub up: DVec3,
-    /// Vertical field of view in degrees, above 0 and below 180.
-    pub vfov: f64,
+impl Default for FilmSettings {
+    fn default() -> Self {
+        Self { width: 800, height: 600, spp: 64, exposure: 0.0 }
+    }
 }
 
 /// Path length and random numbers.
@@ -158,6 +94,12 @@ pub struct IntegratorSettings {
     pub russian_roulette: bool,
     /// Seed of all random numbers.
     pub seed: u64,
+}
+
+impl Default for IntegratorSettings {
+    fn default() -> Self {
+        Self { max_depth: 8, russian_roulette: true, seed: 0 }
+    }
 }
 
 /// A surface: the sum of its lobes, and its own light.

@@ -3,7 +3,7 @@
 //! The files are written to the report's folder, where a scene that fails can be rendered again by hand.
 
 use crate::shipped::{Files, shipped, unpack};
-use anyhow::Result;
+use anyhow::{Context, Result};
 use gonio_accel::Intersect;
 use gonio_kernel::{Lobe, Rgb};
 use gonio_tracer::scene::{Scene, Sky};
@@ -127,7 +127,7 @@ impl Furnace {
 
     /// Renders the scene.
     pub(super) fn render(&self, scene: &Scene, shot: &Shot, spp: u32, seed: u64) -> Result<Rendering> {
-        let world = World::new(scene)?;
+        let world = World::new(scene).context("scene")?;
         let accel = shot.backend.build(world.geometry(), Intersect::Robust)?;
         let mut settings = RenderSettings { spp, seed, threads: shot.threads, ..RenderSettings::of(scene, &world) };
         settings.russian_roulette = shot.roulette;

@@ -9,7 +9,7 @@ use gonio_kernel::lobe::{Conductor, Dielectric, EonAlbedo, Lambert, Layering, Ph
 use gonio_kernel::microfacet::Distribution;
 
 fn read_text(text: &str) -> Result<Material, String> {
-    Material::from_toml_str(text, Path::new("dir/brass.toml")).map_err(|error| error.to_string())
+    material_from_toml_str(text, Path::new("dir/brass.toml")).map_err(|error| error.to_string())
 }
 
 fn refused(text: &str) -> String {

@@ -26,13 +26,13 @@ pub(super) struct Pool {
 
 /// Triangles of one format: all with texture coordinates or none, all with normals or none.
 #[derive(Default)]
-pub(in crate::scene) struct Part {
-    pub(in crate::scene) positions: Vec<[f64; 3]>,
-    pub(in crate::scene) normals: Option<Vec<[f32; 3]>>,
-    pub(in crate::scene) uvs: Option<Vec<[f32; 2]>>,
-    pub(in crate::scene) triangles: Vec<[u32; 3]>,
+pub(crate) struct Part {
+    pub(crate) positions: Vec<[f64; 3]>,
+    pub(crate) normals: Option<Vec<[f32; 3]>>,
+    pub(crate) uvs: Option<Vec<[f32; 2]>>,
+    pub(crate) triangles: Vec<[u32; 3]>,
     /// How many triangles in turn have which material: 0 where none is named, otherwise its place among the names plus 1.
-    pub(in crate::scene) materials: Vec<(u32, u32)>,
+    pub(crate) materials: Vec<(u32, u32)>,
     /// For each position of the file, the newest vertex made of it, plus 1.
     newest: Vec<u32>,
     /// For each vertex: its texture coordinate, its normal, and the next older vertex at its position, plus 1. Empty

@@ -3,13 +3,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::SceneError;
+use crate::SceneError;
 
 /// The file that `name`, written in the file `from`, stands for; `None` if there is none.
 ///
 /// Relative names start at the folder of `from`. Backslashes separate folders everywhere. A name that leads nowhere
 /// (an absolute path on its author's machine) is looked for beside `from` by its last part.
-pub(super) fn find(from: &Path, name: &str) -> Option<PathBuf> {
+pub(crate) fn find(from: &Path, name: &str) -> Option<PathBuf> {
     let folder = from.parent().unwrap_or(Path::new(""));
     let slashed = name.replace('\\', "/");
     let last = slashed.rsplit('/').next().unwrap_or_default();
@@ -23,7 +23,7 @@ pub(super) fn find(from: &Path, name: &str) -> Option<PathBuf> {
 /// The file's text without byte-order mark, lines ended by `\n`.
 ///
 /// Bytes that are not UTF-8 are read as Latin-1, which keeps different names different.
-pub(super) fn read_text(path: &Path) -> Result<String, SceneError> {
+pub(crate) fn read_text(path: &Path) -> Result<String, SceneError> {
     let bytes = fs::read(path).map_err(|error| SceneError::file(path, format!("cannot be read: {error}")))?;
     let text = match String::from_utf8(bytes) {
         Ok(text) => text,

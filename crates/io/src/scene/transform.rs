@@ -2,8 +2,8 @@
 
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 
-use super::SceneError;
 use super::document::Value;
+use crate::SceneError;
 
 /// Reads a list of steps, e.g. `[{ scale = 2 }, { rotate = { axis = [0, 1, 0], degrees = 30 } }]`.
 ///

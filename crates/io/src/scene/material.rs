@@ -7,33 +7,38 @@ use std::path::Path;
 use gonio_kernel::lobe::{AnyLobe, Coating};
 use gonio_kernel::model::{Entry, Model, Parameter, Problem, Quantity, Role, Source, Words, each_key};
 use gonio_kernel::{Lobe, Parameters, Rgb, Vec3};
+use gonio_tracer::scene::{LobeSpec, MAX_RADIANCE, Material, NormalMapSpec};
+use gonio_tracer::{MOST_COATS, MOST_LOBES};
 
 use super::document::{Document, Table, Value};
-use super::error::quoted;
-use super::textures::Textures;
-use super::{LobeSpec, MAX_RADIANCE, Material, NormalMapSpec, SceneError, paths};
-use crate::material::{MOST_COATS, MOST_LOBES};
+use crate::error::{SceneError, quoted};
+use crate::paths;
+use crate::textures::Textures;
 
 /// Largest factor on the slopes of a normal map.
 const MAX_NORMAL_SCALE: f64 = 10.0;
 /// Combinations of models, by name.
 const COMBINATIONS: [&str; 2] = ["mix", "layered"];
 
-impl Material {
-    /// Reads a material file: the keys of a scene's `[materials.NAME]` table, without that header.
-    ///
-    /// The material is called after the file. Images are not possible here, because they belong to a scene.
-    ///
-    /// # Errors
-    /// The syntax, an unknown key, or a value out of range, with the line.
-    pub fn from_toml_str(text: &str, path: &Path) -> Result<Self, SceneError> {
-        let document = Document { path, text };
-        let parsed = document.parse()?;
-        let table = Table::new(document, "the material", 0, parsed.get_ref());
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        let mut context = Context { textures: None, warn: &mut |_| () };
-        read(&name, &table, &mut context)
-    }
+/// Reads a material file: the keys of a scene's `[materials.NAME]` table, without that header.
+///
+/// The material is called after the file. Images are not possible here, because they belong to a scene.
+///
+/// ```
+/// let brass = gonio_io::material_from_toml_str("type = \"mirror\"", "brass.toml".as_ref())?;
+/// assert_eq!((brass.name.as_str(), brass.lobes.len()), ("brass", 1));
+/// # Ok::<(), gonio_io::SceneError>(())
+/// ```
+///
+/// # Errors
+/// The syntax, an unknown key, or a value out of range, with the line.
+pub fn material_from_toml_str(text: &str, path: &Path) -> Result<Material, SceneError> {
+    let document = Document { path, text };
+    let parsed = document.parse()?;
+    let table = Table::new(document, "the material", 0, parsed.get_ref());
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let mut context = Context { textures: None, warn: &mut |_| () };
+    read(&name, &table, &mut context)
 }
 
 /// What reading a material needs beside its table.
@@ -281,5 +286,4 @@ fn image(
 }
 
 #[cfg(test)]
-#[path = "material_tests.rs"]
 mod tests;

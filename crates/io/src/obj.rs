@@ -11,7 +11,7 @@
 use std::fs::File;
 use std::path::Path;
 
-use super::SceneError;
+use crate::SceneError;
 
 mod lines;
 mod part;
@@ -19,24 +19,24 @@ mod polygon;
 mod statements;
 
 use lines::{Lines, Survey};
-pub(super) use part::Part;
+pub(crate) use part::Part;
 use statements::Reader;
 
 /// What an OBJ file holds.
-pub(super) struct ObjFile {
-    pub(super) parts: Vec<Part>,
+pub(crate) struct ObjFile {
+    pub(crate) parts: Vec<Part>,
     /// Material names with the line of their first use; [`Part::materials`] counts them from 1.
-    pub(super) materials: Vec<(String, u32)>,
+    pub(crate) materials: Vec<(String, u32)>,
     /// Arguments of `mtllib` with their lines.
-    pub(super) libraries: Vec<(String, u32)>,
-    pub(super) warnings: Vec<String>,
+    pub(crate) libraries: Vec<(String, u32)>,
+    pub(crate) warnings: Vec<String>,
 }
 
 /// Reads an OBJ file without its materials; `progress` is told how many bytes are done, and of how many.
 ///
 /// # Errors
 /// The file cannot be read, a line means nothing, or no triangle with an area is left.
-pub(super) fn load(path: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<ObjFile, SceneError> {
+pub(crate) fn load(path: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<ObjFile, SceneError> {
     let unreadable = |error: std::io::Error| SceneError::file(path, format!("cannot be read: {error}"));
     let file = File::open(path).map_err(unreadable)?;
     let size = file.metadata().map_err(unreadable)?.len();

@@ -3,15 +3,17 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use super::SceneError;
-use crate::normal_map::NormalMap;
-use crate::texture::Texture;
+use gonio_tracer::normal_map::NormalMap;
+use gonio_tracer::texture::Texture;
+
+use crate::SceneError;
+use crate::bitmap::{read_normal_map, read_texture};
 
 /// Images loaded so far.
 #[derive(Default)]
-pub(super) struct Textures {
-    pub(super) list: Vec<Texture>,
-    pub(super) normal_maps: Vec<NormalMap>,
+pub(crate) struct Textures {
+    pub(crate) list: Vec<Texture>,
+    pub(crate) normal_maps: Vec<NormalMap>,
     index: HashMap<PathBuf, usize>,
     normal_map_index: HashMap<PathBuf, usize>,
 }
@@ -21,16 +23,16 @@ impl Textures {
     ///
     /// # Errors
     /// The file cannot be read or decoded.
-    pub(super) fn load(&mut self, path: &Path) -> Result<usize, SceneError> {
-        once(&mut self.list, &mut self.index, path, Texture::load)
+    pub(crate) fn load(&mut self, path: &Path) -> Result<usize, SceneError> {
+        once(&mut self.list, &mut self.index, path, read_texture)
     }
 
     /// The index of an image of normals, which is decoded if it is new.
     ///
     /// # Errors
     /// The file cannot be read or decoded, or is grey.
-    pub(super) fn load_normals(&mut self, path: &Path) -> Result<usize, SceneError> {
-        once(&mut self.normal_maps, &mut self.normal_map_index, path, NormalMap::load)
+    pub(crate) fn load_normals(&mut self, path: &Path) -> Result<usize, SceneError> {
+        once(&mut self.normal_maps, &mut self.normal_map_index, path, read_normal_map)
     }
 }
 

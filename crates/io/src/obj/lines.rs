@@ -9,7 +9,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek};
 use std::path::Path;
 
-use crate::scene::SceneError;
+use crate::SceneError;
 
 /// Longest statement in bytes, continued lines included: a polygon of a million corners.
 const LONGEST: usize = 1 << 24;

@@ -9,8 +9,8 @@ use gonio_kernel::Rgb;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::error::quoted;
-use super::{SceneError, nesting};
+use super::nesting;
+use crate::error::{SceneError, quoted};
 
 /// The text and its name: turns a place in it into a line.
 #[derive(Clone, Copy)]

@@ -7,14 +7,14 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use crate::scene::SceneError;
+use crate::SceneError;
 
 /// Keywords with numbers: canonical spelling, how many, least and largest value.
 const NUMBERS: [(&str, usize, f64, f64); 13] = [
     ("Ka", 3, f64::MIN, f64::MAX), // not used, but its spelling must not trip the reader
     ("Kd", 3, 0.0, 1.0),
     ("Ks", 3, 0.0, 1.0),
-    ("Ke", 3, 0.0, crate::scene::MAX_RADIANCE),
+    ("Ke", 3, 0.0, gonio_tracer::scene::MAX_RADIANCE),
     ("Tf", 3, 0.0, 1.0),
     ("Ns", 1, 0.0, 1e9),
     ("Ni", 1, 0.0, 1e3),

@@ -2,23 +2,13 @@
 
 use std::path::Path;
 
+use gonio_tracer::scene::{CameraSpec, FilmSettings, IntegratorSettings, Loading, Scene};
+
 use super::build::{Assignment, Builder};
-use super::camera::CameraSpec;
 use super::document::{Document, Table, Value};
-use super::error::quoted;
-use super::{FilmSettings, IntegratorSettings, Loading, Scene, SceneError, environment, material, paths, transform};
-
-impl Default for FilmSettings {
-    fn default() -> Self {
-        Self { width: 800, height: 600, spp: 64, exposure: 0.0 }
-    }
-}
-
-impl Default for IntegratorSettings {
-    fn default() -> Self {
-        Self { max_depth: 8, russian_roulette: true, seed: 0 }
-    }
-}
+use super::{environment, material, transform};
+use crate::error::{SceneError, quoted};
+use crate::paths;
 
 /// Reads a scene file and everything it names.
 pub(super) fn read(text: &str, path: &Path, progress: &mut dyn FnMut(Loading)) -> Result<Scene, SceneError> {
@@ -59,6 +49,7 @@ pub(super) fn read(text: &str, path: &Path, progress: &mut dyn FnMut(Loading)) -
     let (width, height) = (f64::from(film.width), f64::from(film.height));
     let camera = camera
         .complete(builder.bounds, width / height)
+        .map_err(|error| error.to_string())
         .map_err(|why| camera_table.map_or_else(|| document.error(0, &*why), |table| table.error(&*why)))?;
     Ok(builder.finish(film, camera, integrator, environment))
 }

@@ -1,7 +1,7 @@
 //! Files of both formats, whole, damaged and lying.
 
 use super::*;
-use crate::image::{Metadata, write_exr};
+use crate::exr::{Metadata, write};
 use ::exr::prelude::{self as exr_files, WritableImage};
 use std::path::PathBuf;
 
@@ -116,7 +116,7 @@ fn every_open_exr_that_is_cut_or_changed_is_read_or_refused_without_panic() {
     let folder = Folder::new("changed");
     let path = folder.0.join("a.exr");
     let rgb = (0..64 * 40).map(|i| [i as f32, 0.5, 1.0 / (1 + i) as f32]).collect();
-    write_exr(&path, &Picture { width: 64, height: 40, rgb }, None, &Metadata::default()).unwrap();
+    write(&path, &Picture { width: 64, height: 40, rgb }, None, &Metadata::default()).unwrap();
     let whole = fs::read(&path).unwrap();
     for length in (0..whole.len()).step_by(61) {
         fs::write(&path, &whole[..length]).unwrap();
@@ -136,7 +136,7 @@ fn every_open_exr_that_is_cut_or_changed_is_read_or_refused_without_panic() {
 fn an_open_exr_that_promises_too_much_is_refused_before_anything_is_allocated() {
     let folder = Folder::new("lies");
     let path = folder.0.join("a.exr");
-    write_exr(&path, &Picture { width: 2, height: 2, rgb: vec![[1.0; 3]; 4] }, None, &Metadata::default()).unwrap();
+    write(&path, &Picture { width: 2, height: 2, rgb: vec![[1.0; 3]; 4] }, None, &Metadata::default()).unwrap();
     let mut bytes = fs::read(&path).unwrap();
     // Both windows: name, 0, type, 0, size, then x and y of the first and of the last pixel.
     for name in ["dataWindow\0box2i\0", "displayWindow\0box2i\0"] {

@@ -1,4 +1,4 @@
-//! Why a scene was refused: always the file, and the line wherever a line is to blame.
+//! Why a file was refused: always which, and the line wherever a line is to blame.
 
 use std::path::{Path, PathBuf};
 
@@ -29,12 +29,29 @@ impl SceneError {
     }
 }
 
+/// Why a picture could not be written or read. It prints as `out/a.exr: cannot be written: …`.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {message}", .path.display())]
+pub struct ImageError {
+    /// The picture's file.
+    pub path: PathBuf,
+    /// What went wrong.
+    pub message: String,
+}
+
+impl ImageError {
+    /// Blames a file.
+    pub(crate) fn of(path: &Path, message: impl Into<String>) -> Self {
+        Self { path: path.to_path_buf(), message: message.into() }
+    }
+}
+
 fn line_suffix(line: Option<u32>) -> String {
     line.map_or_else(String::new, |line| format!(":{line}"))
 }
 
 /// Writes `"a", "b"` for messages; long lists end in a count.
-pub(super) fn quoted<'a>(names: impl Iterator<Item = &'a str>) -> String {
+pub(crate) fn quoted<'a>(names: impl Iterator<Item = &'a str>) -> String {
     const SHOWN: usize = 12; // a line that still fits a terminal
     let all: Vec<String> = names.map(|name| format!("\"{name}\"")).collect();
     match all.len() {

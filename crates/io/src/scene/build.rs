@@ -7,14 +7,15 @@ use std::path::{Path, PathBuf};
 use glam::{DAffine3, DVec3};
 use gonio_kernel::Rgb;
 use gonio_kernel::lobe::Lambert;
-
-use super::mtl::Library;
-use super::obj::{self, ObjFile};
-use super::textures::Textures;
-use super::{
-    Camera, Environment, FilmSettings, Instance, IntegratorSettings, Loading, LobeSpec, Material, Mesh, Scene,
-    SceneError, Stage, paths,
+use gonio_tracer::scene::{
+    Camera, Environment, FilmSettings, Instance, IntegratorSettings, Loading, LobeSpec, Material, Mesh, Scene, Stage,
 };
+
+use crate::SceneError;
+use crate::mtl::Library;
+use crate::obj::{self, ObjFile};
+use crate::paths;
+use crate::textures::Textures;
 
 /// Largest number of materials: an index fits sixteen bits.
 const MAX_MATERIALS: usize = 65_535;

@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::lines::{Lines, Survey};
 use super::part::{Corner, Faults, NONE, Part, Pool, Scratch, unit};
-use crate::scene::SceneError;
+use crate::SceneError;
 
 /// Largest coordinate: far beyond any unit in use, and its cube is still finite in f32.
 const MAX_COORDINATE: f64 = 1e12;

@@ -17,7 +17,10 @@ use exr::meta::header::Header;
 use image::ImageDecoder;
 use image::codecs::hdr::HdrDecoder;
 
-use crate::image::{ImageError, Picture, REC_709, failure, read_exr};
+use gonio_tracer::Picture;
+
+use crate::ImageError;
+use crate::exr::REC_709;
 
 /// Most pixels along an edge.
 const MAX_EDGE: usize = 65_536;
@@ -33,31 +36,33 @@ const SAME_CHROMATICITY: f32 = 0.002;
 /// # Errors
 /// The file cannot be read, is neither Radiance nor OpenEXR, is damaged, has no pixels or too many, or holds no RGB.
 pub fn read(path: &Path) -> Result<(Picture, Vec<String>), ImageError> {
-    let bytes = fs::read(path).map_err(|error| failure(path, format!("cannot be read: {error}")))?;
+    let bytes = fs::read(path).map_err(|error| ImageError::of(path, format!("cannot be read: {error}")))?;
     match bytes.as_slice() {
         [0x76, 0x2f, 0x31, 0x01, ..] => {
             drop(bytes);
             read_open_exr(path)
         }
         [b'#', b'?', ..] => read_radiance(path, &bytes),
-        [0x89, b'P', b'N', b'G', ..] | [0xff, 0xd8, 0xff, ..] => Err(failure(
+        [0x89, b'P', b'N', b'G', ..] | [0xff, 0xd8, 0xff, ..] => Err(ImageError::of(
             path,
             "has eight or sixteen bits per channel, which cannot hold the radiance of an environment: \
              Radiance (.hdr) or OpenEXR (.exr) is needed",
         )),
-        _ => Err(failure(path, "is neither Radiance (.hdr) nor OpenEXR (.exr)")),
+        _ => Err(ImageError::of(path, "is neither Radiance (.hdr) nor OpenEXR (.exr)")),
     }
 }
 
 fn read_radiance(path: &Path, bytes: &[u8]) -> Result<(Picture, Vec<String>), ImageError> {
     let refuse = |error: image::ImageError| match error {
         image::ImageError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
-            failure(path, "is truncated: it ends before its last pixel")
+            ImageError::of(path, "is truncated: it ends before its last pixel")
         }
-        error => failure(path, format!("cannot be decoded: {error}")),
+        error => ImageError::of(path, format!("cannot be decoded: {error}")),
     };
     let decoder = HdrDecoder::new_nonstrict(Cursor::new(bytes)).map_err(|error| match has_xyz(bytes) {
-        true => failure(path, "holds XYZ colours (FORMAT=32-bit_rle_xyze); convert it to RGB first (ra_xyze -r)"),
+        true => {
+            ImageError::of(path, "holds XYZ colours (FORMAT=32-bit_rle_xyze); convert it to RGB first (ra_xyze -r)")
+        }
         false => refuse(error),
     })?;
     let header = decoder.metadata();
@@ -80,8 +85,8 @@ fn has_xyz(bytes: &[u8]) -> bool {
 }
 
 fn read_open_exr(path: &Path) -> Result<(Picture, Vec<String>), ImageError> {
-    let meta =
-        MetaData::read_from_file(path, false).map_err(|error| failure(path, format!("cannot be read: {error}")))?;
+    let meta = MetaData::read_from_file(path, false)
+        .map_err(|error| ImageError::of(path, format!("cannot be read: {error}")))?;
     let length = fs::metadata(path).map_or(0, |file| usize::try_from(file.len()).unwrap_or(usize::MAX));
     for header in &meta.headers {
         check_size(path, [header.layer_size.width(), header.layer_size.height()], length)?;
@@ -89,11 +94,11 @@ fn read_open_exr(path: &Path) -> Result<(Picture, Vec<String>), ImageError> {
     let Some(header) = meta.headers.iter().find(|header| has_rgb(header)) else {
         let names = meta.headers.iter().flat_map(|header| &header.channels.list).map(|c| c.name.to_string());
         let names = names.collect::<Vec<_>>().join(", ");
-        return Err(failure(path, format!("has no layer with channels R, G and B; its channels are {names}")));
+        return Err(ImageError::of(path, format!("has no layer with channels R, G and B; its channels are {names}")));
     };
     let display = header.shared_attributes.display_window;
     if (header.own_attributes.layer_position, header.layer_size) != (display.position, display.size) {
-        return Err(failure(path, "is cropped: its data window is not its display window"));
+        return Err(ImageError::of(path, "is cropped: its data window is not its display window"));
     }
     let mut warnings = Vec::new();
     let found = header.shared_attributes.chromaticities.map(|c| [c.red, c.green, c.blue, c.white]);
@@ -105,7 +110,7 @@ fn read_open_exr(path: &Path) -> Result<(Picture, Vec<String>), ImageError> {
         let text = "its chromaticities are not those of Rec. 709, as which its pixels are used all the same";
         warnings.push(format!("{}: {text}", path.display()));
     }
-    Ok((read_exr(path)?, warnings))
+    Ok((crate::exr::read(path)?, warnings))
 }
 
 fn has_rgb(header: &Header) -> bool {
@@ -116,15 +121,18 @@ fn has_rgb(header: &Header) -> bool {
 fn check_size(path: &Path, [width, height]: [usize; 2], length: usize) -> Result<(), ImageError> {
     let pixels = width.saturating_mul(height);
     if pixels == 0 {
-        return Err(failure(path, format!("has no pixels: {width} x {height}")));
+        return Err(ImageError::of(path, format!("has no pixels: {width} x {height}")));
     }
     if width > MAX_EDGE || height > MAX_EDGE || pixels > MAX_PIXELS {
         let text =
             format!("is too large: {width} x {height}; at most {MAX_EDGE} along an edge and {MAX_PIXELS} pixels");
-        return Err(failure(path, text));
+        return Err(ImageError::of(path, text));
     }
     if pixels / MAX_PIXELS_PER_BYTE > length {
-        return Err(failure(path, format!("is truncated: {length} bytes cannot hold {width} x {height} pixels")));
+        return Err(ImageError::of(
+            path,
+            format!("is truncated: {length} bytes cannot hold {width} x {height} pixels"),
+        ));
     }
     Ok(())
 }

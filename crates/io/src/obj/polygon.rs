@@ -184,5 +184,4 @@ impl<'a> Ring<'a> {
 }
 
 #[cfg(test)]
-#[path = "polygon_tests.rs"]
 mod tests;

@@ -11,10 +11,11 @@ use gonio_kernel::Rgb;
 use gonio_kernel::fresnel::Fresnel;
 use gonio_kernel::lobe::{Conductor, Lambert, Layering, Mirror};
 use gonio_kernel::microfacet::Ggx;
+use gonio_tracer::scene::{LobeSpec, Material};
 
-use super::error::quoted;
-use super::textures::Textures;
-use super::{LobeSpec, Material, SceneError, paths};
+use crate::error::{SceneError, quoted};
+use crate::paths;
+use crate::textures::Textures;
 
 mod clean;
 
@@ -24,7 +25,7 @@ const MIRROR_NS: f64 = 1000.0;
 const MIRROR_ALPHA: f32 = 1e-4;
 
 /// One MTL file.
-pub(super) struct Library {
+pub(crate) struct Library {
     path: PathBuf,
     names: Vec<String>,
     materials: Vec<tobj::Material>,
@@ -38,7 +39,7 @@ impl Library {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub(super) fn load(path: &Path) -> Result<Self, SceneError> {
+    pub(crate) fn load(path: &Path) -> Result<Self, SceneError> {
         let clean = clean::clean(path, &paths::read_text(path)?);
         let (materials, _) = tobj::load_mtl_buf(&mut clean.text.as_bytes())
             .map_err(|error| SceneError::file(path, format!("cannot be read: {error}")))?;
@@ -47,12 +48,12 @@ impl Library {
     }
 
     /// The first material of that name.
-    pub(super) fn find(&self, name: &str) -> Option<usize> {
+    pub(crate) fn find(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|candidate| candidate == name)
     }
 
     /// Warnings so far; called once all materials that are used have been converted.
-    pub(super) fn into_warnings(mut self) -> Vec<String> {
+    pub(crate) fn into_warnings(mut self) -> Vec<String> {
         let path = self.path.display();
         let lost = self
             .lost
@@ -66,7 +67,7 @@ impl Library {
     ///
     /// # Errors
     /// A base-colour image exists but cannot be decoded.
-    pub(super) fn convert(&mut self, index: usize, textures: &mut Textures) -> Result<Material, SceneError> {
+    pub(crate) fn convert(&mut self, index: usize, textures: &mut Textures) -> Result<Material, SceneError> {
         let (name, mtl) = (self.names[index].clone(), self.materials[index].clone());
         let unknown = |key: &str| mtl.unknown_param.get(key).and_then(|text| text.parse::<f64>().ok());
         self.note_unsupported(&name, &mtl);
@@ -224,5 +225,4 @@ fn is_black(color: Rgb<f32>) -> bool {
 }
 
 #[cfg(test)]
-#[path = "tests.rs"]
 mod tests;
