@@ -207,7 +207,7 @@ fn a_render_writes_pictures_and_statistics_in_silence() {
     for name in ["closest_rays", "shadow_rays", "threads"] {
         assert!(stats[name].as_u64().unwrap() > 0, "{name}");
     }
-    for name in ["film_hash", "plan", "version"] {
+    for name in ["film_hash", "effects", "version"] {
         assert!(!stats[name].as_str().unwrap().is_empty(), "{name}");
     }
     assert_eq!(stats["backend"], "brute");

@@ -5,7 +5,7 @@
 use crate::support::{Folder, moments, repository, welch};
 use gonio_accel::Intersect;
 use gonio_tracer::scene::{Environment, Scene, Sky, SkyMap};
-use gonio_tracer::{Backend, Picture, RenderSettings, Techniques, World, render};
+use gonio_tracer::{Backend, Picture, Prepared, RenderSettings, Techniques, World, render};
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -99,11 +99,11 @@ fn lit(mut scene: Scene, sky: SkyMap) -> Scene {
 /// The mean of the picture for each seed.
 fn means(scene: &Scene, change: impl Fn(&mut RenderSettings)) -> Vec<[f64; 3]> {
     let world = World::new(scene).expect("the scene is sound");
-    let accel = Backend::Obvhs.build(world.geometry(), Intersect::Robust).expect("obvhs needs nothing");
+    let prepared = Prepared::new(world, Backend::Obvhs, Intersect::Robust).expect("obvhs needs nothing");
     let one = |seed| {
-        let mut settings = RenderSettings { seed, ..RenderSettings::of(scene, &world) };
+        let mut settings = RenderSettings { seed, ..RenderSettings::of(scene) };
         change(&mut settings);
-        let rgb = render(&world, &*accel, &settings, &mut |_| ControlFlow::Continue(())).picture.rgb;
+        let rgb = render(&prepared, &settings, &mut |_| ControlFlow::Continue(())).picture.rgb;
         std::array::from_fn(|c| rgb.iter().map(|p| f64::from(p[c])).sum::<f64>() / rgb.len() as f64)
     };
     (0..SEEDS).map(one).collect()
@@ -175,8 +175,8 @@ fn a_map_can_be_only_seen_or_only_light() {
     let mut picture = |camera_visible, illuminates| {
         (scene.environment.camera_visible, scene.environment.illuminates) = (camera_visible, illuminates);
         let world = World::new(&scene).expect("the scene is sound");
-        let accel = Backend::Obvhs.build(world.geometry(), Intersect::Robust).expect("obvhs needs nothing");
-        render(&world, &*accel, &RenderSettings::of(&scene, &world), &mut |_| ControlFlow::Continue(())).picture.rgb
+        let prepared = Prepared::new(world, Backend::Obvhs, Intersect::Robust).expect("obvhs needs nothing");
+        render(&prepared, &RenderSettings::of(&scene), &mut |_| ControlFlow::Continue(())).picture.rgb
     };
     let (both, light, background) = (picture(true, true), picture(false, true), picture(true, false));
     let (corner, middle) = (0, 8 * 16 + 8);

@@ -10,7 +10,7 @@ use gonio_accel::Intersect;
 use gonio_io::exr::{self, Metadata};
 use gonio_tracer::normal_map::NormalMap;
 use gonio_tracer::scene::{NormalMapSpec, Scene, Sky};
-use gonio_tracer::{Backend, Picture, RenderSettings, World, render};
+use gonio_tracer::{Backend, Picture, Prepared, RenderSettings, World, render};
 use serde::Deserialize;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -36,16 +36,16 @@ fn compare(name: &str, scene: &Scene) -> Result<(), String> {
     let reference: Reference = serde_json::from_str(&text).expect("the reference is JSON");
     assert_eq!((scene.film.width, scene.film.height), (reference.width, reference.height));
     let world = World::new(scene).expect("the scene is sound");
-    let accel = Backend::Obvhs.build(world.geometry(), Intersect::Robust).expect("obvhs needs nothing");
+    let prepared = Prepared::new(world, Backend::Obvhs, Intersect::Robust).expect("obvhs needs nothing");
     let (width, block) = (reference.width as usize, reference.block);
     let (per_row, per_column) = (width / block, reference.height as usize / block);
 
     let mut images: Vec<[f64; 3]> = Vec::new();
     let mut blocks: Vec<Vec<f64>> = Vec::new();
     for seed in 0..reference.seeds as u64 {
-        let mut settings = RenderSettings { seed: 1000 + seed, ..RenderSettings::of(scene, &world) };
+        let mut settings = RenderSettings { seed: 1000 + seed, ..RenderSettings::of(scene) };
         settings.max_depth = reference.scattering_events;
-        let picture = render(&world, &*accel, &settings, &mut |_| ControlFlow::Continue(())).picture;
+        let picture = render(&prepared, &settings, &mut |_| ControlFlow::Continue(())).picture;
         let mut sums = vec![0.0; reference.mean.len()];
         for (i, rgb) in picture.rgb.iter().enumerate() {
             let at = i / width / block * per_row + i % width / block;

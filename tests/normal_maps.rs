@@ -5,7 +5,7 @@ use gonio_accel::{Intersect, Sharing};
 use gonio_kernel::Vec3;
 use gonio_tracer::normal_map::NormalMap;
 use gonio_tracer::scene::Scene;
-use gonio_tracer::{Backend, Plan, RenderSettings, Rendering, World, render};
+use gonio_tracer::{Backend, Effect, Prepared, RenderSettings, Rendering, World, render};
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -41,10 +41,10 @@ fn rendered(scene: &Scene, change: impl Fn(&mut RenderSettings)) -> Rendering {
 
 fn rendered_by(sharing: Sharing, scene: &Scene, change: impl Fn(&mut RenderSettings)) -> Rendering {
     let world = World::by(scene, sharing).expect("the scene is sound");
-    let mut settings = RenderSettings { layers: true, ..RenderSettings::of(scene, &world) };
+    let mut settings = RenderSettings { layers: true, ..RenderSettings::of(scene) };
     change(&mut settings);
-    let accel = Backend::Obvhs.build(world.geometry(), Intersect::Robust).expect("obvhs needs nothing");
-    render(&world, &*accel, &settings, &mut |_| ControlFlow::Continue(()))
+    let prepared = Prepared::new(world, Backend::Obvhs, Intersect::Robust).expect("obvhs needs nothing");
+    render(&prepared, &settings, &mut |_| ControlFlow::Continue(()))
 }
 
 /// Each map of one normal must give its normal of the world.
@@ -127,16 +127,15 @@ fn white_lambert_tilted_by_beta_returns_half_of_one_plus_its_cosine() {
 }
 
 #[test]
-fn a_plan_with_every_effect_renders_the_same_picture_and_the_pruned_one_knows_its_effect() {
+fn every_effect_renders_the_same_picture_and_the_scene_knows_its_own() {
     let mut scene = gonio_io::load(&repository("tests/reference/normal_map.toml")).expect("the scene is shipped");
     scene.film.spp = 4;
     let world = World::new(&scene).expect("the scene is sound");
-    assert!(world.plan().normal_maps && !world.plan().textures && !world.plan().tangents);
-    assert!(world.plan().to_string().contains("normal maps"), "{}", world.plan());
+    let needed = world.effects().set();
+    assert!(needed.has(Effect::NormalMaps) && !needed.has(Effect::Textures) && !needed.has(Effect::Tangents));
+    assert_eq!(world.effects().needed_by(Effect::NormalMaps), ["material \"bumps\""]);
     let expected = rendered(&scene, |_| ()).stats.film_hash;
-    assert_eq!(rendered(&scene, |s| s.plan = Plan::everything()).stats.film_hash, expected);
-    let flat = rendered(&scene, |s| s.plan.normal_maps = false).stats.film_hash;
-    assert_ne!(flat, expected, "the map is seen");
+    assert_eq!(rendered(&scene, |s| s.every_effect = true).stats.film_hash, expected);
 }
 
 /// The refusal of the square with these lines about its material.

@@ -1,24 +1,27 @@
-//! Threads, crops, plans, backends, scale and place never change a picture; light neither leaks in nor gets lost.
+//! Threads, crops, pruning, backends, scale and place never change a picture; light neither leaks in nor gets lost.
 
 use crate::support::{Random, cornell_box, repository};
 use glam::{DAffine3, DVec3};
-use gonio_accel::{Intersect, Obvhs, ObvhsOptions, Sharing};
+use gonio_accel::{Accel, Intersect, Obvhs, ObvhsOptions, Sharing};
 use gonio_kernel::Rgb;
 use gonio_kernel::energy::Compensation;
 use gonio_kernel::fresnel::Fresnel;
 use gonio_kernel::lobe::{AnyLobe, Coating, Conductor, Dielectric, Lambert, Layer, Layering, Mirror, RoughDielectric};
 use gonio_kernel::microfacet::Ggx;
 use gonio_tracer::scene::{Environment, LobeSpec, Material, Scene, Sky, SkyMap};
-use gonio_tracer::{Backend, Crop, CustomLobe, Picture, Plan, RenderSettings, Rendering, Techniques, World, render};
+use gonio_tracer::{
+    Backend, Crop, CustomLobe, Picture, Prepared, RenderSettings, Rendering, Techniques, World, render,
+};
+use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 fn rendered(scene: &Scene, backend: Backend, change: impl Fn(&mut RenderSettings)) -> Rendering {
     let world = World::new(scene).expect("the scene is sound");
-    let mut settings = RenderSettings::of(scene, &world);
+    let mut settings = RenderSettings::of(scene);
     change(&mut settings);
-    let accel = backend.build(world.geometry(), Intersect::Robust).expect("the backend builds");
-    render(&world, &*accel, &settings, &mut |_| ControlFlow::Continue(()))
+    let prepared = Prepared::new(world, backend, Intersect::Robust).expect("the backend builds");
+    render(&prepared, &settings, &mut |_| ControlFlow::Continue(()))
 }
 
 fn mean(rendering: &Rendering) -> [f64; 3] {
@@ -56,7 +59,7 @@ fn under_a_map() -> Scene {
 }
 
 #[test]
-fn threads_backends_and_plans_never_change_a_picture() {
+fn threads_backends_and_pruning_never_change_a_picture() {
     for scene in [cornell_box(48, 8), varied(), under_a_map()] {
         let expected = rendered(&scene, Backend::Obvhs, |s| s.threads = 1).stats.film_hash;
         for backend in Backend::ALL.into_iter().filter(|backend| backend.is_exact()) {
@@ -64,7 +67,7 @@ fn threads_backends_and_plans_never_change_a_picture() {
                 let hash = rendered(&scene, backend, |s| s.threads = threads).stats.film_hash;
                 assert_eq!(hash, expected, "{backend}, {threads} threads");
             }
-            let hash = rendered(&scene, backend, |s| s.plan = Plan::everything()).stats.film_hash;
+            let hash = rendered(&scene, backend, |s| s.every_effect = true).stats.film_hash;
             assert_eq!(hash, expected, "{backend}, every effect");
         }
         assert_ne!(rendered(&scene, Backend::Obvhs, |s| s.seed = 1).stats.film_hash, expected, "another seed");
@@ -123,10 +126,13 @@ fn meshes_that_are_kept_once_look_as_if_they_were_laid_out() {
     }
     let rendered = |scene: &Scene, world: Sharing, tree: Sharing| {
         let world = World::by(scene, world).expect("the scene is sound");
-        let settings = RenderSettings::of(scene, &world);
+        let settings = RenderSettings::of(scene);
         let options = ObvhsOptions { sharing: tree, ..Default::default() };
-        let accel = Obvhs::always_tree(world.geometry(), options);
-        render(&world, &accel, &settings, &mut |_| ControlFlow::Continue(()))
+        let prepared = Prepared::by(world, |geometry| -> Result<Box<dyn Accel>, Infallible> {
+            Ok(Box::new(Obvhs::always_tree(geometry, options)))
+        });
+        let Ok(prepared) = prepared;
+        render(&prepared, &settings, &mut |_| ControlFlow::Continue(()))
     };
     for (name, scene) in [("varied", varied()), ("spheres", spheres()), ("mirrored spheres", mirrored)] {
         let laid_out = rendered(&scene, Sharing::Never, Sharing::Never);

@@ -36,7 +36,7 @@ fn every_key_of_an_environment_map_arrives_and_odd_texels_are_dealt_with() {
     exr::write(&folder.path().join("sky.exr"), &black, None, &Metadata::default()).unwrap();
     let scene = gonio_io::load(&folder.write("scene.toml", under("map = \"sky.exr\"\n"))).unwrap();
     assert!(folder.warnings(&scene).contains(&"the scene has no light: the picture will be black".to_owned()));
-    assert!(!gonio_tracer::World::new(&scene).unwrap().plan().environment);
+    assert!(!gonio_tracer::World::new(&scene).unwrap().effects().set().has(gonio_tracer::Effect::Environment));
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::usage::{Usage, several, warn};
 use anyhow::{Context, Result};
 use gonio_accel::Intersect;
 use gonio_tracer::scene::Scene;
-use gonio_tracer::{Backend, Crop, RenderSettings, World};
+use gonio_tracer::{Backend, Crop, Prepared, RenderSettings, World};
 use pictures::{Origin, is_picture};
 use std::cell::LazyCell;
 use std::io::{self, IsTerminal};
@@ -101,22 +101,23 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
     let start = Instant::now();
     let mut tell = |loading| report.loading(&loading);
-    let accel = args.backend.build_with(world.geometry(), intersect(args), &mut tell)?;
+    let prepared = Prepared::new_with(world, args.backend, intersect(args), &mut tell)?;
     let build_seconds = start.elapsed().as_secs_f64();
 
-    let settings = settings(args, &scene, &world);
+    let settings = settings(args, &scene);
     let times = stats::Times { load_seconds, build_seconds };
     let origin = Origin {
         scene_file: &args.scene,
         scene: &scene,
-        scene_hash: LazyCell::new(Box::new(|| world.fingerprint())),
+        scene_hash: LazyCell::new(Box::new(|| prepared.world().fingerprint())),
         settings: &settings,
+        effects: prepared.world().effects().set(),
         backend: args.backend,
         intersect: intersect(args),
         times,
     };
     signals::work_in_passes();
-    let rendering = gonio_tracer::render(&world, &*accel, &settings, &mut |pass| {
+    let rendering = gonio_tracer::render(&prepared, &settings, &mut |pass| {
         report.pass(&pass.progress);
         let done = pass.progress.spp_done == pass.progress.spp;
         if signals::show() && !done {
@@ -187,8 +188,8 @@ fn intersect(args: &Args) -> Intersect {
     if args.fast_intersect { Intersect::Fast } else { Intersect::Robust }
 }
 
-fn settings(args: &Args, scene: &Scene, world: &World) -> RenderSettings {
-    let mut settings = RenderSettings::of(scene, world);
+fn settings(args: &Args, scene: &Scene) -> RenderSettings {
+    let mut settings = RenderSettings::of(scene);
     settings.spp = args.spp.unwrap_or(settings.spp);
     settings.seed = args.seed.unwrap_or(settings.seed);
     settings.max_depth = args.max_depth.unwrap_or(settings.max_depth);

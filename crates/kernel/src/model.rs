@@ -178,6 +178,9 @@ pub trait Parameters: Copy {
     fn gather(lanes: [&Self::Of<f32>; 8]) -> Self::Of<F32x8>;
     /// Whether both run the same code: equal choices, equal ways, equal models.
     fn same_code(&self, other: &Self) -> bool;
+    /// Calls `visit` with all that decides which code runs: the names of models, ways and words, in order. Two that run the same
+    /// code say the same.
+    fn each_choice(&self, visit: &mut dyn FnMut(&'static str));
     /// Whether every number lies in its domain and every rule over several holds.
     fn in_domain(&self) -> <Self::Real as Real>::Mask;
     /// The directional albedo over the angle, erring upwards, of a lobe that can lie on top of others: they receive what is left
@@ -222,6 +225,8 @@ pub trait Parameters: Copy {
 pub trait Model: Parameters {
     /// Whether `type = name` with these keys is this model.
     fn is_named(name: &str, has: &dyn Fn(&str) -> bool) -> bool;
+    /// The name of this model, its `type` in material files.
+    fn model_name(&self) -> &'static str;
     /// Calls `visit` with each model's declaration.
     fn each_model(visit: &mut dyn FnMut(&'static ModelInfo));
 }

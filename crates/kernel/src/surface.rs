@@ -12,7 +12,7 @@ use crate::energy::AlbedoCurve;
 use crate::lobe::{
     AnyLobe, Coat, Event, Layering, Lobe, Properties, Sample, Transport, Value, Weighted, either_scale, rest_of,
 };
-use crate::model::{Entry, Parameter, Parameters, Source};
+use crate::model::{Choice, Entry, Parameter, Parameters, Source};
 use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
 use crate::vec3::Vec3;
@@ -424,6 +424,10 @@ impl<R: Real, L: Parameters<Real = R>, const N: usize, const C: usize> Parameter
         self.lobes().count() == other.lobes().count()
             && self.layerings() == other.layerings()
             && both.all(|(a, b)| a.same_code(b))
+    }
+    fn each_choice(&self, visit: &mut dyn FnMut(&'static str)) {
+        self.layerings().iter().flatten().for_each(|(_, layering)| visit(layering.word()));
+        self.lobes().for_each(|lobe| lobe.each_choice(visit));
     }
     fn in_domain(&self) -> R::Mask {
         self.lobes().fold(R::Mask::splat(true), |ok, lobe| ok & lobe.in_domain())

@@ -16,6 +16,14 @@ pub enum WorldError {
         /// What does not fit.
         why: SurfaceError,
     },
+    /// A light cannot be sampled.
+    #[error("light {number}: {why}")]
+    Light {
+        /// Which one, from 1.
+        number: usize,
+        /// What is wrong with it.
+        why: String,
+    },
     /// Rays cannot be cast at what is placed: too many triangles, or positions that overflow `f32`.
     #[error(transparent)]
     Geometry(#[from] GeometryError),

@@ -1,139 +1,128 @@
-//! The film: sums of samples that do not depend on the order in which they arrive.
-//!
-//! Each channel is summed as a 64-bit integer in units of 2⁻²². A sample must be finite and below 2²¹ in magnitude, and a
-//! pixel takes at most 2²⁰ samples, so a sum stays below 2⁶³ and integer addition stays associative: no saturation, which
-//! would depend on the order. Rounding to the unit is dithered by a hash of (pixel, sample), because plain truncation
-//! loses half a unit per sample: 10 % at radiance 1e-6. What is not finite or too large is dropped and counted.
+//! The film: tiles of pixels, whose sums do not depend on the order in which samples arrive.
 
-use crate::fingerprint::Fingerprint;
-use crate::sampler::hash2;
+pub(crate) mod pixel;
 
-/// Units per 1.0 of radiance.
-pub(crate) const UNIT: f64 = (1_u64 << 22) as f64;
-/// Samples must be smaller than this in magnitude.
-const LARGEST: f32 = (1_u32 << 21) as f32;
+use crate::layers::{DepthUnit, LayerSums, Layers};
+use crate::picture::Picture;
+use crate::stats::{RenderStats, TileStats};
+use crate::world::World;
+use pixel::Pixel;
+use rayon::prelude::*;
 
-/// The sums of one pixel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Pixel {
-    sum: [i64; 3],
-    count: u32,
-    dropped: u32,
+/// Pixels along a tile's edge.
+pub(crate) const TILE: u32 = 16;
+
+/// A rectangle of pixels, half open. Each pixel keeps the random numbers it has in the whole picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// First column.
+    pub x0: u32,
+    /// One past the last column.
+    pub x1: u32,
+    /// First row.
+    pub y0: u32,
+    /// One past the last row.
+    pub y1: u32,
 }
 
-impl Pixel {
-    /// Adds a sample; `pixel` and `sample` address its dither. Whether it counts, or was dropped.
-    #[inline]
-    pub(crate) fn add(&mut self, rgb: [f32; 3], pixel: u32, sample: u32) -> bool {
-        self.count += 1;
-        // A NaN fails the comparison.
-        let counts = rgb.iter().all(|x| x.abs() < LARGEST);
-        if counts {
-            let dither = Dither::of(pixel, sample);
-            for (sum, x) in self.sum.iter_mut().zip(rgb) {
-                *sum += dither.units(x);
+/// A picture and how it was made.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// The mean radiance of each pixel.
+    pub picture: Picture,
+    /// What lies beside it, if asked for.
+    pub layers: Option<Layers>,
+    /// Counts and times.
+    pub stats: RenderStats,
+}
+
+/// All sums of a render.
+pub(crate) struct Film {
+    pub(crate) crop: Crop,
+    tiles: Vec<FilmTile>,
+    /// If layers are gathered.
+    depth_unit: Option<DepthUnit>,
+    threads: usize,
+    /// Samples that every pixel has.
+    pub(crate) spp_done: u32,
+}
+
+/// A square of the film and its sums.
+pub(crate) struct FilmTile {
+    pub(crate) x0: u32,
+    pub(crate) y0: u32,
+    pub(crate) width: u32,
+    pub(crate) pixels: Vec<Pixel>,
+    /// One per pixel, or none at all.
+    pub(crate) layers: Vec<LayerSums>,
+    pub(crate) stats: TileStats,
+}
+
+impl Crop {
+    pub(crate) fn pixels(&self) -> u64 {
+        u64::from(self.x1 - self.x0) * u64::from(self.y1 - self.y0)
+    }
+}
+
+impl Film {
+    pub(crate) fn new(world: &World, crop: Option<Crop>, layers: bool, threads: usize) -> Self {
+        let film = world.film;
+        let whole = Crop { x0: 0, x1: film.width, y0: 0, y1: film.height };
+        let crop = crop.map_or(whole, |c| Crop {
+            x0: c.x0.min(c.x1).min(film.width),
+            x1: c.x1.min(film.width),
+            y0: c.y0.min(c.y1).min(film.height),
+            y1: c.y1.min(film.height),
+        });
+        let depth_unit = layers.then(|| DepthUnit::for_depths_up_to(world.farthest_depth()));
+        Self { crop, tiles: tiles_of(crop, layers), depth_unit, threads, spp_done: 0 }
+    }
+
+    /// Has every tile rendered, each by some worker, one per thread.
+    pub(crate) fn expose<W: Default>(&mut self, render: impl Fn(&mut W, &mut FilmTile, Option<DepthUnit>) + Sync) {
+        let depth_unit = self.depth_unit;
+        self.tiles.par_iter_mut().for_each_init(W::default, |worker, tile| render(worker, tile, depth_unit));
+    }
+
+    /// The tiles put together.
+    pub(crate) fn develop(&self, seconds: f64) -> Rendering {
+        let mut stats = TileStats::default();
+        self.tiles.iter().for_each(|tile| stats.add(&tile.stats));
+        let pixels = self.gather(|tile| &tile.pixels);
+        let layers = self.depth_unit.map(|unit| Layers::develop(&pixels, &self.gather(|tile| &tile.layers), unit));
+        let dropped = pixels.iter().map(|p| u64::from(p.dropped())).sum();
+        let (width, height) = (self.crop.x1 - self.crop.x0, self.crop.y1 - self.crop.y0);
+        Rendering {
+            picture: Picture { width, height, rgb: pixels.iter().map(Pixel::mean).collect() },
+            layers,
+            stats: stats.finish(seconds, self.spp_done, dropped, pixel::hash(pixels.iter()), self.threads),
+        }
+    }
+
+    /// One value per pixel of the crop, rows from the top.
+    fn gather<T: Copy + Default>(&self, of: impl Fn(&FilmTile) -> &[T]) -> Vec<T> {
+        let width = (self.crop.x1 - self.crop.x0) as usize;
+        let mut all = vec![T::default(); width * (self.crop.y1 - self.crop.y0) as usize];
+        for tile in &self.tiles {
+            for (row, line) in of(tile).chunks(tile.width as usize).enumerate() {
+                let (x, y) = ((tile.x0 - self.crop.x0) as usize, (tile.y0 - self.crop.y0) as usize + row);
+                all[y * width + x..][..line.len()].copy_from_slice(line);
             }
-        } else {
-            self.dropped += 1;
         }
-        counts
-    }
-
-    /// The mean of the samples, dropped ones counting as black; black if there are none.
-    pub(crate) fn mean(&self) -> [f32; 3] {
-        self.mean_of(self.sum)
-    }
-
-    /// The mean over this pixel's samples of a sum of [`Dither::units`].
-    pub(crate) fn mean_of(&self, sum: [i64; 3]) -> [f32; 3] {
-        let scale = if self.count > 0 { 1.0 / (UNIT * f64::from(self.count)) } else { 0.0 };
-        sum.map(|s| (s as f64 * scale) as f32)
-    }
-
-    /// Σx over the samples, in units.
-    pub(crate) fn sum(&self) -> [i64; 3] {
-        self.sum
-    }
-
-    /// How many samples there are, dropped ones included.
-    pub(crate) fn count(&self) -> u32 {
-        self.count
-    }
-
-    /// How many samples were not finite or too large.
-    pub(crate) fn dropped(&self) -> u32 {
-        self.dropped
+        all
     }
 }
 
-/// How a sample is rounded: the same for all its values, so that what is no larger stays no larger.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Dither(f64);
-
-impl Dither {
-    /// That of a sample, in [−0.5, 0.5).
-    #[inline]
-    pub(crate) fn of(pixel: u32, sample: u32) -> Self {
-        Self(f64::from(hash2(pixel, sample)) / 4_294_967_296.0 - 0.5)
-    }
-
-    /// A radiance in units.
-    #[inline]
-    pub(crate) fn units(self, x: f32) -> i64 {
-        round_to_i64(f64::from(x).mul_add(UNIT, self.0))
-    }
-}
-
-/// The nearest integer of |x| < 2⁵¹: adding 1.5·2⁵² leaves it in the low bits, with no cast that could hide a NaN.
-pub(crate) fn round_to_i64(x: f64) -> i64 {
-    const MAGIC: f64 = 6_755_399_441_055_744.0;
-    (x + MAGIC).to_bits().wrapping_sub(MAGIC.to_bits()).cast_signed()
-}
-
-/// A hash of all sums and counts, in pixel order: equal pictures have equal hashes, to the last bit.
-pub(crate) fn hash<'a>(pixels: impl Iterator<Item = &'a Pixel>) -> String {
-    let mut fingerprint = Fingerprint::new();
-    for p in pixels {
-        p.sum.iter().for_each(|s| fingerprint.bytes(&s.to_le_bytes()));
-        fingerprint.bytes(&(u64::from(p.count) << 32 | u64::from(p.dropped)).to_le_bytes());
-    }
-    fingerprint.text()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sums_do_not_depend_on_the_order() {
-        let samples: Vec<[f32; 3]> = (0..1000).map(|i| [0.1 * i as f32, 1e-6 * i as f32, 2e6 - i as f32]).collect();
-        let (mut forward, mut backward) = (Pixel::default(), Pixel::default());
-        for (i, s) in samples.iter().enumerate() {
-            forward.add(*s, 9, i as u32);
+/// The crop cut into tiles, row by row.
+fn tiles_of(crop: Crop, layers: bool) -> Vec<FilmTile> {
+    let mut tiles = Vec::new();
+    for y0 in (crop.y0..crop.y1).step_by(TILE as usize) {
+        for x0 in (crop.x0..crop.x1).step_by(TILE as usize) {
+            let (width, height) = (TILE.min(crop.x1 - x0), TILE.min(crop.y1 - y0));
+            let pixels = vec![Pixel::default(); (width * height) as usize];
+            let layers = vec![LayerSums::default(); if layers { pixels.len() } else { 0 }];
+            tiles.push(FilmTile { x0, y0, width, pixels, layers, stats: TileStats::default() });
         }
-        for (i, s) in samples.iter().enumerate().rev() {
-            backward.add(*s, 9, i as u32);
-        }
-        assert_eq!(forward, backward);
     }
-
-    #[test]
-    fn the_mean_of_faint_samples_is_not_biased() {
-        // 1e-6 is about four units; rounding noise of n samples has a standard error of half a unit over √n.
-        let n = 200_000;
-        let mut p = Pixel::default();
-        assert!((0..n).all(|i| p.add([1e-6; 3], 1, i)));
-        assert!((f64::from(p.mean()[0]) - 1e-6).abs() < 5.0 * 0.5 / UNIT / f64::from(n).sqrt());
-    }
-
-    #[test]
-    fn what_is_not_finite_or_too_large_is_dropped_and_counted() {
-        let mut p = Pixel::default();
-        for x in [f32::NAN, f32::INFINITY, -f32::INFINITY, LARGEST] {
-            assert!(!p.add([x, 0.0, 0.0], 0, 0));
-        }
-        assert!(p.add([4.0, 0.0, LARGEST.next_down()], 0, 0));
-        assert_eq!(p.dropped(), 4);
-        assert!((p.mean()[0] - 0.8).abs() < 1e-6);
-    }
+    tiles
 }

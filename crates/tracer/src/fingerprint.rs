@@ -18,6 +18,18 @@ impl Fingerprint {
         }
     }
 
+    /// Takes in numbers, in order.
+    #[inline]
+    pub(crate) fn numbers(&mut self, numbers: impl IntoIterator<Item = f32>) {
+        numbers.into_iter().for_each(|x| self.bytes(&x.to_le_bytes()));
+    }
+
+    /// Takes in a text, and that it ends.
+    pub(crate) fn text_of(&mut self, text: &str) {
+        self.bytes(text.as_bytes());
+        self.bytes(&[0xff]); // which no text holds
+    }
+
     /// In hexadecimal.
     pub(crate) fn text(self) -> String {
         format!("{:016x}", self.0)

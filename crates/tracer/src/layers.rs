@@ -10,11 +10,11 @@
 //! | `variance` | estimated variance of the pixel's mean: s²/n |
 //! | `sample_count` | n |
 //!
-//! Sums are integers, as in [`crate::film`], so threads and order change nothing here either. Squares are summed in 128
+//! Sums are integers, as in [`crate::film::pixel`], so threads and order change nothing here either. Squares are summed in 128
 //! bits, so that the variance is exact however small it is beside the mean: a sample is below 2⁴³ units, its square below
 //! 2⁸⁶, and 2²⁰ of them below 2¹⁰⁶.
 
-use crate::film::{Dither, Pixel, UNIT, round_to_i64};
+use crate::film::pixel::{Dither, Pixel, UNIT, round_to_i64};
 
 /// What a camera ray sees first, by path.
 #[derive(Clone, Copy, Debug, Default)]

@@ -2,9 +2,9 @@
 //!
 //! The modules, in the order in which data flows through them:
 //!
-//! [`scene`] (plain data) → [`world`] (placed, recentred, with [`Plan`] and lights) → a [`Backend`] casts its rays
-//! → [`render`] drives queues of path states through generate, closest hit, sort, shade and shadow stages → the film adds
-//! samples as integers → a [`Picture`].
+//! [`scene`] (plain data) → [`world`] (placed and recentred, with its lights and the [`effects`] that it calls for) → a
+//! [`Backend`] casts its rays → [`render`] runs passes over the film, whose tiles drive queues of path states through the
+//! stages generate, closest hit, sort, shade and shadow → the film adds samples as integers → a [`Picture`].
 //!
 //! A square under a white sky, seen from the front:
 //!
@@ -17,7 +17,7 @@
 //! use gonio_tracer::scene::{
 //!     CameraSpec, Environment, FilmSettings, Instance, IntegratorSettings, LobeSpec, Material, Mesh, Scene,
 //! };
-//! use gonio_tracer::{Backend, RenderSettings, World, render};
+//! use gonio_tracer::{Backend, Prepared, RenderSettings, World, render};
 //!
 //! let square = Mesh {
 //!     name: "square".to_owned(),
@@ -37,11 +37,11 @@
 //!     meshes: vec![square],
 //!     instances: vec![Instance { name: "square".to_owned(), mesh: 0, transform: DAffine3::IDENTITY }],
 //!     environment: Environment::constant(Rgb::splat(1.0)),
+//!     lights: Vec::new(),
 //!     warnings: Vec::new(),
 //! };
-//! let world = World::new(&scene)?;
-//! let accel = Backend::Obvhs.build(world.geometry(), Intersect::Robust)?;
-//! let rendering = render(&world, &*accel, &RenderSettings::of(&scene, &world), &mut |_| ControlFlow::Continue(()));
+//! let prepared = Prepared::new(World::new(&scene)?, Backend::Obvhs, Intersect::Robust)?;
+//! let rendering = render(&prepared, &RenderSettings::of(&scene), &mut |_| ControlFlow::Continue(()));
 //! // In the middle half of the light comes back, at the edge the sky is seen.
 //! assert!((rendering.picture.rgb[4 * 8 + 4][0] - 0.5).abs() < 1e-5);
 //! assert_eq!(rendering.picture.rgb[0][0], 1.0);
@@ -57,35 +57,40 @@ compile_error!(
 
 mod alias;
 mod backend;
-mod environment;
+mod camera;
+pub mod effects;
 mod error;
 mod film;
 mod fingerprint;
+mod integrator;
 mod layers;
-mod light;
+pub mod light;
 mod material;
 pub mod normal_map;
 mod picture;
-mod plan;
 mod point;
+mod prepared;
 mod queue;
 mod render;
 mod sampler;
 pub mod scene;
 mod shade;
+mod sides;
 mod stats;
 pub mod texture;
 pub mod world;
 
 pub use backend::{Backend, BackendError};
+pub use camera::View;
+pub use effects::{Effect, EffectSet, SceneEffects};
 pub use error::WorldError;
+pub use film::{Crop, Rendering};
 pub use layers::Layers;
-pub use light::Techniques;
+pub use light::{SHORT_OF_LIGHT, Techniques};
 pub use material::{BatchBsdf, CustomLobe, MOST_COATS, MOST_LOBES, MaterialSurface, Scattered, constant_surface};
 pub use picture::Picture;
-pub use plan::Plan;
 pub use point::SurfacePoint;
-pub use render::{Crop, Pass, Progress, RenderSettings, Rendering, render};
-pub use shade::SHORT_OF_LIGHT;
+pub use prepared::Prepared;
+pub use render::{Pass, Progress, RenderSettings, render};
 pub use stats::{LargeSample, RenderStats};
-pub use world::{View, World};
+pub use world::World;

@@ -1,177 +1,185 @@
-//! Lights: emitting triangles and the environment, and the choice between them.
+//! Lights: each kind says in one place how it is sampled and with which density, and whoever needs either asks it there.
 //!
-//! A triangle is chosen with probability proportional to its power (area times luminance), so the density of a point is
-//! luminance / Σ(area · luminance), the same on all triangles of a material. If there are both kinds of light, each gets
-//! half of the samples; an absent kind has probability exactly 0. A constant environment is sampled by cosine about the
-//! shading normal, a map by its luminance over the whole sphere: samples below the horizon are wasted.
+//! - [`area`]: emissive triangles, which rays also hit;
+//! - [`environment`]: light from infinitely far away, constant or a map, which rays meet when they leave the world;
+//! - [`delta`]: lights that no ray meets (point, spot, distant, and a user's own: [`Light`]).
+//!
+//! Each kind that a scene has gets the same share of the light samples; an absent kind has probability exactly 0.
 
-use crate::alias::{alias_table, pick};
-use crate::environment::EnvironmentMap;
+pub(crate) mod area;
+pub(crate) mod delta;
+pub(crate) mod environment;
+mod map;
+mod mis;
+pub(crate) mod point;
+
+pub use delta::{Bounds, Light, LightSource};
+pub use mis::Techniques;
+pub use point::PointLight;
+
 use crate::fingerprint::Fingerprint;
-use crate::scene::{Environment, Sky};
-use gonio_kernel::{F32x8, Real, Rgb, U32x8, Vec3, each_lane};
+use crate::point::ShadingPoints;
+use crate::sampler::Random4;
+use crate::scene;
+use crate::scene::fields::{Fields, Refusal};
+use crate::sides::Sides;
+use area::{EmissiveTriangles, Emitter};
+use delta::DeltaLights;
+use environment::Environment;
+use std::sync::Arc;
 
-/// An emitting triangle.
+use gonio_kernel::{F32x8, Frame, Mask, Mask8, Real, Rgb, Vec3};
+
+/// Shadow rays stop this much short of the light, relative to its distance: the rounding of the distance and of t.
+pub const SHORT_OF_LIGHT: f32 = 1.0 - 16.0 / 16_777_216.0;
+
+/// Reads a light from the fields that describe it.
+pub type ReadLight = fn(&mut dyn Fields) -> Result<Arc<dyn LightSource>, Refusal>;
+
+/// The kinds of lights that scene files can name, by their `type`.
+pub const KINDS: &[(&str, ReadLight)] = &[("point", PointLight::read)];
+
+/// Eight shading points as lights see them.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Emitter {
-    pub(crate) corners: [Vec3<f32>; 3],
-    /// The side of the winding that emits, unit.
-    pub(crate) normal: Vec3<f32>,
-    pub(crate) radiance: Rgb<f32>,
+pub struct Reference<'a> {
+    points: &'a ShadingPoints<'a>,
+    sides: &'a Sides,
+}
+
+impl<'a> Reference<'a> {
+    #[inline(always)]
+    pub(crate) fn new(points: &'a ShadingPoints<'a>, sides: &'a Sides) -> Self {
+        Self { points, sides }
+    }
+
+    /// The shading frame, on the side of wo, or of the winding where the material transmits.
+    #[inline(always)]
+    pub fn frame(&self) -> &Frame<F32x8> {
+        &self.points.frame
+    }
+
+    /// Where a shadow ray to that point of the world starts. Distances and directions to it are measured from here.
+    #[inline(always)]
+    pub fn origin_towards(&self, target: Vec3<F32x8>) -> Vec3<F32x8> {
+        self.sides.origin_towards(target)
+    }
+}
+
+/// A direction in which light may arrive at each of eight points.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample {
+    /// Towards the light, unit, in the world.
+    pub wi: Vec3<F32x8>,
+    /// Density per solid angle; for a delta light 1.
+    pub pdf: F32x8,
+    /// Radiance that arrives if nothing is in the way \[W/(m² sr)\]; for a delta light the irradiance of a surface that faces
+    /// it \[W/m²\].
+    pub radiance: Rgb<F32x8>,
+    /// How far away the light is; infinity if it is not in the world \[m\].
+    pub distance: F32x8,
+    /// Whether light can arrive at all.
+    pub possible: Mask8,
+}
+
+impl LightSample {
+    #[inline(always)]
+    fn select(mask: Mask8, yes: Self, no: Self) -> Self {
+        Self {
+            wi: Vec3::select(mask, yes.wi, no.wi),
+            pdf: F32x8::select(mask, yes.pdf, no.pdf),
+            radiance: Rgb::select(mask, yes.radiance, no.radiance),
+            distance: F32x8::select(mask, yes.distance, no.distance),
+            possible: (mask & yes.possible) | (!mask & no.possible),
+        }
+    }
+}
+
+/// A light sample, and whether scattering cannot find that light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ChosenSample {
+    pub(crate) sample: LightSample,
+    pub(crate) is_delta: Mask8,
 }
 
 /// All lights of a world.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lights {
-    emitters: Vec<Emitter>,
-    alias: Vec<(f32, u32)>,
-    /// Σ area · luminance.
-    power: f64,
-    sky: Option<PreparedSky>,
-    camera_sees_sky: bool,
-    sky_illuminates: bool,
-}
-
-/// What lies behind everything, unless it is black.
-#[derive(Clone, Debug)]
-pub(crate) enum PreparedSky {
-    /// The same radiance from everywhere.
-    Constant(Rgb<f32>),
-    /// A picture.
-    Map(Box<EnvironmentMap>),
-}
-
-/// Eight emitters side by side.
-pub(crate) struct Emitters {
-    pub(crate) corners: [Vec3<F32x8>; 3],
-    pub(crate) normal: Vec3<F32x8>,
-    pub(crate) radiance: Rgb<F32x8>,
+    pub(crate) environment: Environment,
+    pub(crate) triangles: EmissiveTriangles,
+    pub(crate) delta: DeltaLights,
+    /// Where the shares of triangles and of delta lights begin; that of the environment begins at 0, and the last ends at 1.
+    starts: [f32; 2],
 }
 
 impl Lights {
-    /// Lights of positive luminance; a black environment is none.
-    pub(crate) fn new(emitters: Vec<Emitter>, environment: &Environment) -> Self {
-        let weights: Vec<f64> = emitters.iter().map(|e| e.area() * f64::from(e.radiance.luminance())).collect();
-        let sky = match &environment.sky {
-            Sky::Constant(radiance) => (radiance.largest() > 0.0).then_some(PreparedSky::Constant(*radiance)),
-            Sky::Map(map) => EnvironmentMap::new(&map.picture, map.rotation, map.intensity)
-                .map(|map| PreparedSky::Map(Box::new(map))),
+    pub(crate) fn new(emitters: Vec<Emitter>, environment: &scene::Environment, delta: DeltaLights) -> Self {
+        let (mut environment, mut triangles) = (Environment::new(environment), EmissiveTriangles::new(emitters));
+        let mut delta = delta;
+        let present = [environment.is_light(), !triangles.emitters().is_empty(), !delta.is_empty()];
+        let of = present.iter().filter(|present| **present).count().max(1) as f32;
+        let mut begun = 0;
+        let [first, second, third] = present.map(|present| {
+            begun += u8::from(present);
+            f32::from(begun) / of
+        });
+        environment.set_share(first);
+        triangles.set_share(second - first);
+        delta.set_share(third - second);
+        Self { environment, triangles, delta, starts: [first, second] }
+    }
+
+    /// Whether there is a light to sample.
+    #[inline(always)]
+    pub(crate) fn are_sampled(&self, techniques: Techniques) -> bool {
+        let hittable = self.environment.is_light() || !self.triangles.emitters().is_empty();
+        !self.delta.is_empty() || (hittable && techniques != Techniques::Scattering)
+    }
+
+    /// One light sample for each live lane. None if no lane has one. `u` are four random numbers, `more` draws further ones.
+    #[inline(always)]
+    pub(crate) fn sample(
+        &self,
+        techniques: Techniques,
+        live: Mask8,
+        at: &Reference,
+        u: &Random4,
+        more: impl FnOnce() -> Random4,
+    ) -> Option<ChosenSample> {
+        let u_select = u.unit(0);
+        let [second, third] = self.starts.map(F32x8::splat);
+        let of_environment = u_select.lt(second);
+        let of_delta = u_select.ge(third);
+        let of_triangles = !of_environment & !of_delta;
+        // What is left of the number within the chosen kind decides the second number of the alias; below 1 even after rounding.
+        let rest = |from: F32x8, to: F32x8| ((u_select - from) / (to - from)).min(F32x8::splat(0.999_999_94));
+        let u_position = [u.unit(2), u.unit(3)];
+        let hittable = techniques != Techniques::Scattering;
+
+        let mut found: Option<LightSample> = None;
+        let mut add = |lanes: Mask8, sample: LightSample| {
+            found = Some(match found {
+                None => LightSample { possible: sample.possible & lanes, ..sample },
+                Some(other) => LightSample::select(lanes, sample, other),
+            });
         };
-        Self {
-            alias: alias_table(&weights),
-            power: weights.iter().sum(),
-            emitters,
-            sky,
-            camera_sees_sky: environment.camera_visible,
-            sky_illuminates: environment.illuminates,
+        if hittable && (live & of_environment).any() {
+            if let Some(sample) = self.environment.sample(at, u, more) {
+                add(of_environment, sample);
+            }
         }
-    }
-
-    /// All emitting triangles.
-    pub(crate) fn emitters(&self) -> &[Emitter] {
-        &self.emitters
-    }
-
-    /// Whether the environment does anything.
-    pub(crate) fn has_sky(&self) -> bool {
-        self.sky.is_some() && (self.camera_sees_sky || self.sky_illuminates)
-    }
-
-    /// What paths see that leave the world after so many scattering events; `None` if it is black for them.
-    #[inline(always)]
-    pub(crate) fn sky(&self, depth: u32) -> Option<&PreparedSky> {
-        let seen = if depth == 0 { self.camera_sees_sky } else { self.sky_illuminates };
-        self.sky.as_ref().filter(|_| seen)
-    }
-
-    /// The environment as a light; `None` if it is black or only seen by the camera.
-    #[inline(always)]
-    pub(crate) fn shining_sky(&self) -> Option<&PreparedSky> {
-        self.sky.as_ref().filter(|_| self.sky_illuminates)
-    }
-
-    /// Takes the environment into a fingerprint.
-    pub(crate) fn describe_sky(&self, print: &mut Fingerprint) {
-        match &self.sky {
-            None => {}
-            Some(PreparedSky::Constant(radiance)) => print.bytes(format!("{radiance:?}").as_bytes()),
-            Some(PreparedSky::Map(map)) => map.describe(print),
+        if hittable && (live & of_triangles).any() && !self.triangles.emitters().is_empty() {
+            add(of_triangles, self.triangles.sample(at, u.0[1], rest(second, third), u_position));
         }
-        print.bytes(&[u8::from(self.camera_sees_sky), u8::from(self.sky_illuminates)]);
-    }
-
-    /// Probability of asking the environment.
-    pub(crate) fn environment_probability(&self) -> f32 {
-        match (self.shining_sky(), self.emitters.is_empty()) {
-            (None, _) => 0.0,
-            (Some(_), true) => 1.0,
-            (Some(_), false) => 0.5,
+        if (live & of_delta).any() && !self.delta.is_empty() {
+            add(of_delta, self.delta.sample(at, live & of_delta, u.0[1], rest(third, F32x8::ONE), u_position));
         }
+        let sample = found?;
+        Some(ChosenSample { sample: LightSample { possible: sample.possible & live, ..sample }, is_delta: of_delta })
     }
 
-    /// Density per area of choosing a point of an emitting triangle, per luminance of its radiance; the choice of strategy
-    /// included.
-    pub(crate) fn pdf_area_per_luminance(&self) -> f32 {
-        if self.emitters.is_empty() {
-            return 0.0;
-        }
-        let share = 1.0 - f64::from(self.environment_probability());
-        (share / self.power) as f32
+    /// Takes what the scene's triangles and materials do not say into a fingerprint.
+    pub(crate) fn describe(&self, print: &mut Fingerprint) {
+        self.environment.describe(print);
+        self.delta.describe(print);
     }
-
-    /// Eight emitters for two random words each.
-    #[inline(always)]
-    pub(crate) fn pick(&self, place: U32x8, toss: F32x8) -> Emitters {
-        let emitters = each_lane(|lane| &self.emitters[pick(&self.alias, place.lane(lane), toss.lane(lane))]);
-        let corner = |c: usize| Vec3::from_lanes(|l| emitters[l].corners[c]);
-        Emitters {
-            corners: [corner(0), corner(1), corner(2)],
-            normal: Vec3::from_lanes(|l| emitters[l].normal),
-            radiance: Rgb::new(
-                F32x8::from_fn(|l| emitters[l].radiance.r),
-                F32x8::from_fn(|l| emitters[l].radiance.g),
-                F32x8::from_fn(|l| emitters[l].radiance.b),
-            ),
-        }
-    }
-}
-
-impl Emitter {
-    fn area(&self) -> f64 {
-        let [a, b, c] = self.corners.map(|v| Vec3::new(f64::from(v.x), f64::from(v.y), f64::from(v.z)));
-        0.5 * (b - a).cross(c - a).length()
-    }
-}
-
-/// Which ways of finding light take part. All give the same picture but for noise, which is what this is for: a wrong
-/// density makes them differ.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Techniques {
-    /// Both, weighted by the power heuristic.
-    #[default]
-    Both,
-    /// Lights are asked; scattering finds light only behind delta events and the camera.
-    Lights,
-    /// Scattering alone.
-    Scattering,
-}
-
-impl Techniques {
-    /// The weight of light that was found with density `own` and that the other technique finds with density `other`;
-    /// `alone` is the one that finds light this way when it is the only one.
-    #[inline(always)]
-    pub(crate) fn weight(self, alone: Self, own: F32x8, other: F32x8) -> F32x8 {
-        match self {
-            Self::Both => power_heuristic(own, other),
-            only => F32x8::splat(if only == alone { 1.0 } else { 0.0 }),
-        }
-    }
-}
-
-/// The power heuristic with exponent 2 (Veach & Guibas 1995): the weight of a sample of density `a` that could also have
-/// been drawn with density `b`. Written as a ratio, so that huge densities do not overflow; 1 where b is 0.
-#[inline(always)]
-fn power_heuristic(a: F32x8, b: F32x8) -> F32x8 {
-    let r = b / a;
-    r.mul_add(r, F32x8::ONE).recip()
 }

@@ -8,10 +8,12 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
+use crate::effects::{Effect, EffectSet};
 use crate::error::WorldError;
 use crate::scene::{LobeSpec, Material, NormalMapSpec, Scene, TexturedParameter};
 use crate::texture::Texture;
 use gonio_kernel::lobe::{AnyLobe, Weighted};
+use gonio_kernel::model::Model;
 use gonio_kernel::surface::SurfaceError;
 use gonio_kernel::{BsdfSample, Closure, F32x8, Lobe, Parameters, Real, Rgb, Surface, Value, Vec3, each_lane};
 
@@ -112,7 +114,7 @@ pub(crate) struct PreparedMaterial {
     pub(crate) textured: bool,
     pub(crate) anisotropic: bool,
     pub(crate) normal_map: Option<NormalMapSpec>,
-    pub(crate) discrete: bool,
+    pub(crate) has_delta: bool,
     pub(crate) transmits: bool,
 }
 
@@ -162,10 +164,26 @@ impl PreparedMaterial {
             textured,
             normal_map: spec.normal_map,
             anisotropic: properties.iter().any(|p| p.anisotropic) || custom(|c| c.anisotropic),
-            discrete: properties.iter().any(|p| p.has_delta) || custom(|c| c.has_delta),
+            has_delta: properties.iter().any(|p| p.has_delta) || custom(|c| c.has_delta),
             transmits: properties.iter().any(|p| p.transmits) || custom(|c| c.transmits),
             spec: spec.clone(),
         }
+    }
+
+    /// What it calls for; tangents only on a mesh that has texture coordinates.
+    pub(crate) fn effects(&self) -> EffectSet {
+        EffectSet::when(self.emits(), Effect::AreaLights)
+            .with(EffectSet::when(self.textured, Effect::Textures))
+            .with(EffectSet::when(self.normal_map.is_some(), Effect::NormalMaps))
+            .with(EffectSet::when(!self.two_sided, Effect::OneSided))
+            .with(EffectSet::when(self.has_delta, Effect::DeltaLobes))
+            .with(EffectSet::when(self.transmits, Effect::Transmission))
+    }
+
+    /// The scattering models that it is made of.
+    pub(crate) fn models(&self) -> impl Iterator<Item = &'static str> {
+        let custom = self.spec.custom.is_some().then_some("custom");
+        custom.into_iter().chain(self.spec.lobes.iter().map(|lobe| lobe.lobe.model_name()))
     }
 
     /// Whether light leaves it by itself.
@@ -246,7 +264,7 @@ fn constant(material: &Material) -> Arc<dyn BatchBsdf> {
 
 /// What eight paths scatter by: materials of one variant at eight texture coordinates. `with` is called once.
 pub(crate) fn with_lanes<T>(
-    materials: [&PreparedMaterial; F32x8::LANES],
+    materials: &[&PreparedMaterial; F32x8::LANES],
     alike: bool,
     textures: &[Texture],
     [u, v]: [F32x8; 2],

@@ -1,7 +1,7 @@
 //! Shading points: where eight paths met the world, and in which frame they are shaded.
 
+use crate::effects::{Effect, EffectSet};
 use crate::material::PreparedMaterial;
-use crate::plan::Plan;
 use crate::queue::Batch;
 use crate::scene::NormalMapSpec;
 use crate::world::World;
@@ -40,7 +40,7 @@ impl SurfacePoint {
 
 /// Eight shading points.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ShadingPoints {
+pub(crate) struct ShadingPoints<'w> {
     pub(crate) point: SurfacePoint,
     /// Geometric normal, unit, on wo's side.
     pub(crate) normal: Vec3<F32x8>,
@@ -54,19 +54,18 @@ pub(crate) struct ShadingPoints {
     pub(crate) t: F32x8,
     /// Texture coordinates, 0 without.
     pub(crate) uv: [F32x8; 2],
-    /// Index into the world's materials.
-    pub(crate) material: [u32; F32x8::LANES],
+    pub(crate) materials: [&'w PreparedMaterial; F32x8::LANES],
 }
 
-impl ShadingPoints {
+impl<'w> ShadingPoints<'w> {
     /// Looks up the hits of a batch; wo points back along the rays.
     #[inline(always)]
-    pub(crate) fn new(world: &World, plan: Plan, batch: &Batch, wo: Vec3<F32x8>) -> Self {
+    pub(crate) fn new(world: &'w World, effects: EffectSet, batch: &Batch, wo: Vec3<F32x8>) -> Self {
         let bary = [batch.hit(|h| &h.bary[0]), batch.hit(|h| &h.bary[1])];
         let t = batch.hit(|h| &h.t);
         let triangles = each_lane(|l| {
             let (instance, _, prim) = batch.hit_place(l);
-            world.triangle(instance, prim)
+            world.surfaces.triangle(instance, prim)
         });
         let corner = |c: usize| Vec3::from_lanes(|l| triangles[l].corners[c]);
         let corners = [corner(0), corner(1), corner(2)];
@@ -77,17 +76,17 @@ impl ShadingPoints {
         let normal = winding * side;
 
         let mut shading = normal;
-        let by_vertex = plan.smooth_normals || plan.uvs();
+        let by_vertex = effects.has(Effect::SmoothNormals) || effects.has_uvs();
         let vertices = if by_vertex {
             each_lane(|l| {
                 let (instance, mesh, prim) = batch.hit_place(l);
-                world.vertex_indices(instance, mesh, prim)
+                world.surfaces.vertex_indices(instance, mesh, prim)
             })
         } else {
             [[0; 3]; F32x8::LANES]
         };
-        if plan.smooth_normals {
-            let at = |c: usize| Vec3::from_lanes(|l| world.normal(batch.hit_place(l).0, vertices[l][c]));
+        if effects.has(Effect::SmoothNormals) {
+            let at = |c: usize| Vec3::from_lanes(|l| world.surfaces.normal(batch.hit_place(l).0, vertices[l][c]));
             let b0 = F32x8::ONE - bary[0] - bary[1];
             let n = ((at(0) * b0).along(bary[0], at(1)).along(bary[1], at(2)) * side).normalize_or(normal);
             shading = facing(n, normal, wo);
@@ -100,17 +99,17 @@ impl ShadingPoints {
         let which = |is: fn(&PreparedMaterial) -> bool| {
             Mask8::from_bits((0..F32x8::LANES).fold(0, |bits, l| bits | u32::from(is(materials[l])) << l))
         };
-        if plan.uvs() && !world.uvs.is_empty() {
-            let at = |c: usize, k: usize| F32x8::from_fn(|l| world.uvs[vertices[l][c]][k]);
+        if effects.has_uvs() && !world.surfaces.uvs.is_empty() {
+            let at = |c: usize, k: usize| F32x8::from_fn(|l| world.surfaces.uvs[vertices[l][c]][k]);
             let [u, v] = [[at(0, 0), at(1, 0), at(2, 0)], [at(0, 1), at(1, 1), at(2, 1)]];
             let b0 = F32x8::ONE - bary[0] - bary[1];
             let blend = |x: [F32x8; 3]| b0.mul_add(x[0], bary[0].mul_add(x[1], bary[1] * x[2]));
             uv = [blend(u), blend(v)];
             let (mut along_u, mut mapped) = (Mask8::splat(false), Mask8::splat(false));
-            if plan.tangents {
+            if effects.has(Effect::Tangents) {
                 along_u = which(|m| m.anisotropic);
             }
-            if plan.normal_maps {
+            if effects.has(Effect::NormalMaps) {
                 mapped = which(|m| m.normal_map.is_some());
                 along_u = along_u | mapped;
             }
@@ -133,8 +132,7 @@ impl ShadingPoints {
                 }
             }
         }
-        let material = each_lane(|l| triangles[l].material);
-        if plan.transmission {
+        if effects.has(Effect::Transmission) {
             // An interface has an inside, behind its winding: seen from there, wo is below the surface.
             let turn = which(|m| m.transmits) & !front;
             frame = Frame::select(turn, Frame { x: frame.x, y: -frame.y, z: -frame.z }, frame);
@@ -147,8 +145,16 @@ impl ShadingPoints {
             cos_geometric: cos.abs(),
             t,
             uv,
-            material,
+            materials,
         }
+    }
+}
+
+impl ShadingPoints<'_> {
+    /// Whether all eight are of the same material.
+    #[inline(always)]
+    pub(crate) fn of_one_material(&self) -> bool {
+        self.materials.iter().all(|&m| std::ptr::eq(m, self.materials[0]))
     }
 }
 

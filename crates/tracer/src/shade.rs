@@ -4,22 +4,18 @@
 //! power heuristic on both sides; after the camera or a delta event only scattering can reach it, with weight 1.
 //! Per vertex the order of additions is: emission, then the answer of the shadow ray.
 
-use crate::environment::EnvironmentMap;
+use crate::effects::{Effect, EffectSet};
 use crate::layers::FirstHit;
-use crate::light::{PreparedSky, Techniques};
+use crate::light::{ChosenSample, Reference, SHORT_OF_LIGHT, Techniques};
 use crate::material::{BatchBsdf, with_lanes};
-use crate::plan::Plan;
-use crate::point::{ShadingPoints, SurfacePoint};
+use crate::point::ShadingPoints;
 use crate::queue::{Batch, Paths, Queue, ShadowQueue};
-use crate::sampler::{Purpose, Random4, Sampler};
-use crate::world::{World, splat_rgb};
+use crate::sampler::{Purpose, Sampler};
+use crate::sides::{self, Sides};
+use crate::world::World;
 use gonio_accel::Ray8;
-use gonio_kernel::frame::on_its_side;
-use gonio_kernel::warp::{pdf_cosine_hemisphere, sample_cosine_hemisphere, sample_uniform_triangle};
-use gonio_kernel::{BsdfSample, F32x8, Mask, Mask8, Real, Rgb, U32x8, Vec3, each_lane};
+use gonio_kernel::{BsdfSample, F32x8, Mask, Mask8, Real, Rgb, U32x8, Vec3};
 
-/// Shadow rays stop this much short of the light, relative to its distance: the rounding of the distance and of t.
-pub const SHORT_OF_LIGHT: f32 = 1.0 - 16.0 / 16_777_216.0;
 /// Russian roulette starts with this scattering event.
 const ROULETTE_FROM: u32 = 5;
 /// No path goes on with a higher probability than this once roulette has started.
@@ -29,7 +25,7 @@ const ROULETTE_CAP: f64 = 0.95;
 #[derive(Clone, Copy)]
 pub(crate) struct Context<'a> {
     pub(crate) world: &'a World,
-    pub(crate) plan: Plan,
+    pub(crate) effects: EffectSet,
     pub(crate) sampler: Sampler,
     pub(crate) max_depth: u32,
     pub(crate) russian_roulette: bool,
@@ -79,30 +75,16 @@ impl Incoming {
             path: batch.path_int(|p| &p.path).to_array(),
         }
     }
-
-    /// The weight of light found by scattering, which a light sample would have found with density `pdf_light`.
-    #[inline(always)]
-    fn weight(&self, techniques: Techniques, pdf_light: F32x8) -> F32x8 {
-        let weight = techniques.weight(Techniques::Scattering, self.pdf, pdf_light);
-        F32x8::select(self.pdf.gt(F32x8::ZERO), weight, F32x8::ONE)
-    }
 }
 
 /// Paths that left the world after `depth` scattering events receive the environment.
 #[inline(always)]
 pub(crate) fn miss(ctx: &Context, depth: u32, batch: &Batch, gathered: &mut Gathered) {
-    let lights = &ctx.world.lights;
     let incoming = Incoming::new(batch);
-    let (radiance, pdf) = match lights.sky(depth) {
-        None => return,
-        Some(PreparedSky::Constant(radiance)) => (splat_rgb(*radiance), batch.path(|p| &p.pdf_environment)),
-        Some(PreparedSky::Map(map)) => {
-            let seen = map.at(incoming.dir);
-            (seen.radiance, seen.pdf * F32x8::splat(lights.environment_probability()))
-        }
-    };
-    let weight = incoming.weight(ctx.techniques, pdf);
-    gathered.add(&incoming.path, batch.live, incoming.throughput * radiance * weight);
+    let ahead = || batch.path(|p| &p.pdf_environment);
+    let Some(escaped) = ctx.world.lights.environment.escaped(depth, incoming.dir, ahead) else { return };
+    let weight = ctx.techniques.weight_of_scattering(incoming.pdf, escaped.pdf);
+    gathered.add(&incoming.path, batch.live, incoming.throughput * escaped.radiance * weight);
 }
 
 /// Paths that met materials of one variant: emission, light sample, scattering. `depth` counts the scattering events
@@ -120,13 +102,11 @@ pub(crate) fn hit(
 ) -> u32 {
     let incoming = Incoming::new(batch);
     let wo = -incoming.dir;
-    let points = ShadingPoints::new(ctx.world, ctx.plan, batch, wo);
-    if ctx.plan.area_lights {
+    let points = ShadingPoints::new(ctx.world, ctx.effects, batch, wo);
+    if ctx.effects.has(Effect::AreaLights) {
         receive_emission(ctx, batch, &incoming, &points, gathered);
     }
-    let materials = each_lane(|l| &ctx.world.materials[points.material[l] as usize]);
-    let alike = points.material.iter().all(|&m| m == points.material[0]);
-    with_lanes(materials, alike, &ctx.world.textures, points.uv, |bsdf| {
+    with_lanes(&points.materials, points.of_one_material(), &ctx.world.textures, points.uv, |bsdf| {
         shade(ctx, depth, batch, &incoming, &points, bsdf, first, shadow, next)
     })
 }
@@ -150,36 +130,37 @@ fn shade(
         return 0;
     }
     let mut live = batch.live;
-    if ctx.plan.one_sided {
-        let two_sided = points
-            .material
-            .iter()
-            .enumerate()
-            .fold(0, |bits, (lane, &m)| bits | u32::from(ctx.world.materials[m as usize].two_sided) << lane);
-        live = live & (points.front | Mask8::from_bits(two_sided));
+    if ctx.effects.has(Effect::OneSided) {
+        live = live & sides::scattering(points.front, &points.materials);
     }
     if !live.any() {
         return 0;
     }
 
     let wo = points.frame.to_local(-incoming.dir);
-    let origin = points.point.off_plane(points.normal);
-    let light = sample_lights(ctx, depth, live, incoming, points, origin);
-    let u = ctx.sampler.draw(incoming.pixel, incoming.sample, depth, Purpose::Scatter);
-    let wi = light.as_ref().map(|light| points.frame.to_local(light.wi));
-    let scattered = bsdf.scatter(wo, wi, [u.unit(0), u.unit(1), u.unit(2)]);
+    let sides = Sides::new(points.point, points.normal, ctx.effects.has(Effect::Transmission));
+    let at = Reference::new(points, &sides);
+    let draw = |purpose| ctx.sampler.draw(incoming.pixel, incoming.sample, depth, purpose);
+    let light = ctx.world.lights.are_sampled(ctx.techniques).then(|| {
+        let u = draw(Purpose::Light);
+        ctx.world.lights.sample(ctx.techniques, live, &at, &u, || draw(Purpose::Environment))
+    });
+    let u = draw(Purpose::Scatter);
+    let light = light.flatten().map(|light| (points.frame.to_local(light.sample.wi), light));
+    let scattered = bsdf.scatter(wo, light.map(|(wi, _)| wi), [u.unit(0), u.unit(1), u.unit(2)]);
 
-    if let (Some(light), Some(wi)) = (light, wi) {
+    if let Some((wi, ChosenSample { sample: light, is_delta })) = light {
         let value = scattered.light;
-        let weight = ctx.techniques.weight(Techniques::Lights, light.pdf, value.pdf) / light.pdf;
+        let weight = ctx.techniques.weight_of_light_sample(light.pdf, value.pdf, is_delta) / light.pdf;
         let arriving = incoming.throughput * value.f_cos * light.radiance * weight;
-        let (origin, right_side) = leaving(ctx, points, origin, light.wi, wo.z * wi.z);
-        let mask = light.mask & right_side & arriving.largest().gt(F32x8::ZERO);
+        let (origin, leaves) = sides.leaving(light.wi, wo.z * wi.z);
+        let mask = light.possible & leaves & arriving.largest().gt(F32x8::ZERO);
         if mask.any() {
-            shadow.push(mask, (origin, light.wi, light.t_max), arriving, &incoming.path);
+            let t_max = light.distance * F32x8::splat(SHORT_OF_LIGHT);
+            shadow.push(mask, (origin, light.wi, t_max), arriving, &incoming.path);
         }
     }
-    go_on(ctx, depth, live, incoming, points, &scattered.sample, (wo, origin, u.unit(3)), next);
+    go_on(ctx, depth, live, incoming, points, &sides, &scattered.sample, wo, u.unit(3), next);
     live.to_bits().count_ones()
 }
 
@@ -213,7 +194,7 @@ fn receive_emission(
     points: &ShadingPoints,
     gathered: &mut Gathered,
 ) {
-    let materials = each_lane(|l| &ctx.world.materials[points.material[l] as usize]);
+    let materials = &points.materials;
     if !materials.iter().any(|m| m.emits()) {
         return;
     }
@@ -222,162 +203,10 @@ fn receive_emission(
         F32x8::from_fn(|l| materials[l].emission.g),
         F32x8::from_fn(|l| materials[l].emission.b),
     );
-    let pdf_area = emission.luminance() * F32x8::splat(ctx.world.lights.pdf_area_per_luminance());
-    let pdf_light = pdf_area * points.t * points.t / points.cos_geometric;
+    let pdf = ctx.world.lights.triangles.pdf(emission, [points.t; 2], points.cos_geometric);
+    let weight = ctx.techniques.weight_of_scattering(incoming.pdf, pdf);
     let mask = batch.live & points.front & emission.largest().gt(F32x8::ZERO);
-    gathered.add(&incoming.path, mask, incoming.throughput * emission * incoming.weight(ctx.techniques, pdf_light));
-}
-
-/// Where a ray in the direction wi starts (at `origin` if it stays on wo's side), and whether it leaves on the side on which the
-/// closure scattered it: `sides` is the product of the local cosines.
-#[inline(always)]
-fn leaving(
-    ctx: &Context,
-    points: &ShadingPoints,
-    origin: Vec3<F32x8>,
-    wi: Vec3<F32x8>,
-    sides: F32x8,
-) -> (Vec3<F32x8>, Mask8) {
-    if !ctx.plan.transmission {
-        return (origin, on_its_side(points.normal, wi, Mask8::splat(false)));
-    }
-    let above = points.normal.dot(wi).gt(F32x8::ZERO);
-    let start = Vec3::select(above, origin, points.point.off_plane(-points.normal));
-    (start, on_its_side(points.normal, wi, sides.lt(F32x8::ZERO)))
-}
-
-/// A direction in which light may arrive.
-struct LightSample {
-    wi: Vec3<F32x8>,
-    /// Per solid angle, the choice between lights included.
-    pdf: F32x8,
-    radiance: Rgb<F32x8>,
-    /// How far the shadow ray goes.
-    t_max: F32x8,
-    /// Where there is one.
-    mask: Mask8,
-}
-
-impl LightSample {
-    fn select(mask: Mask8, yes: Self, no: Self) -> Self {
-        Self {
-            wi: Vec3::select(mask, yes.wi, no.wi),
-            pdf: F32x8::select(mask, yes.pdf, no.pdf),
-            radiance: Rgb::select(mask, yes.radiance, no.radiance),
-            t_max: F32x8::select(mask, yes.t_max, no.t_max),
-            mask: (mask & yes.mask) | (!mask & no.mask),
-        }
-    }
-}
-
-/// One light sample for each live lane: of the environment or of an emitter. None if no lane has one.
-#[inline(always)]
-fn sample_lights(
-    ctx: &Context,
-    depth: u32,
-    live: Mask8,
-    incoming: &Incoming,
-    points: &ShadingPoints,
-    origin: Vec3<F32x8>,
-) -> Option<LightSample> {
-    let lights = &ctx.world.lights;
-    if !(ctx.plan.area_lights || ctx.plan.environment) || ctx.techniques == Techniques::Scattering {
-        return None;
-    }
-    let u = ctx.sampler.draw(incoming.pixel, incoming.sample, depth, Purpose::Light);
-    let u_select = u.unit(0);
-    let u_position = [u.unit(2), u.unit(3)];
-    let p_environment = F32x8::splat(lights.environment_probability());
-    let environment = u_select.lt(p_environment);
-    let from_sky = match lights.shining_sky() {
-        Some(sky) if ctx.plan.environment && (live & environment).any() => Some(match sky {
-            PreparedSky::Constant(sky) => sample_environment(*sky, points, u_position, p_environment),
-            PreparedSky::Map(map) => {
-                let u_position = ctx.sampler.draw(incoming.pixel, incoming.sample, depth, Purpose::Environment);
-                sample_map(map, &u, &u_position, p_environment)
-            }
-        }),
-        _ => None,
-    };
-    let from_emitter = (ctx.plan.area_lights && (live & !environment).any()).then(|| {
-        // What is left of the number within the chosen strategy decides the emitter's alias; below 1 even after rounding.
-        let rest = ((u_select - p_environment) / (F32x8::ONE - p_environment)).min(F32x8::splat(0.999_999_94));
-        sample_emitter(ctx, points, origin, u.0[1], rest, u_position)
-    });
-    let sample = match (from_sky, from_emitter) {
-        (Some(sky), Some(emitter)) => LightSample::select(environment, sky, emitter),
-        (Some(sky), None) => LightSample { mask: sky.mask & environment, ..sky },
-        (None, Some(emitter)) => LightSample { mask: emitter.mask & !environment, ..emitter },
-        (None, None) => return None,
-    };
-    Some(LightSample { mask: sample.mask & live, ..sample })
-}
-
-/// A cosine-distributed direction of a constant environment.
-#[inline(always)]
-fn sample_environment(
-    radiance: Rgb<f32>,
-    points: &ShadingPoints,
-    u_position: [F32x8; 2],
-    probability: F32x8,
-) -> LightSample {
-    let local = sample_cosine_hemisphere(u_position);
-    LightSample {
-        wi: points.frame.to_world(local),
-        pdf: pdf_cosine_hemisphere(local) * probability,
-        radiance: splat_rgb(radiance),
-        t_max: F32x8::splat(f32::INFINITY),
-        mask: Mask8::splat(true),
-    }
-}
-
-/// A direction of a map by its luminance; `u_select` are the numbers of the choice between lights, of which it uses the free ones.
-#[inline(always)]
-fn sample_map(map: &EnvironmentMap, u_select: &Random4, u_position: &Random4, probability: F32x8) -> LightSample {
-    let wi = map.sample(u_position, [u_select.0[1], u_select.0[2]]);
-    let seen = map.at(wi);
-    LightSample {
-        wi,
-        pdf: seen.pdf * probability,
-        radiance: seen.radiance,
-        t_max: F32x8::splat(f32::INFINITY),
-        mask: seen.pdf.gt(F32x8::ZERO),
-    }
-}
-
-/// A uniform point of an emitting triangle chosen by power.
-#[inline(always)]
-fn sample_emitter(
-    ctx: &Context,
-    points: &ShadingPoints,
-    origin: Vec3<F32x8>,
-    slot: U32x8,
-    u_select: F32x8,
-    u_position: [F32x8; 2],
-) -> LightSample {
-    let emitters = ctx.world.lights.pick(slot, u_select);
-    let normal = emitters.normal;
-    let target = SurfacePoint::new(&emitters.corners, sample_uniform_triangle(u_position)).off_plane(normal);
-    // The ray starts on the side where the light is.
-    let start = if ctx.plan.transmission {
-        let beside = points.normal.dot(target - points.point.position).lt(F32x8::ZERO);
-        Vec3::select(beside, points.point.off_plane(-points.normal), origin)
-    } else {
-        origin
-    };
-    let to = target - start;
-    let distance2 = to.length2();
-    let distance = distance2.sqrt();
-    let wi = to * distance.recip();
-    let cos = -normal.dot(wi);
-    let pdf_area = emitters.radiance.luminance() * F32x8::splat(ctx.world.lights.pdf_area_per_luminance());
-    LightSample {
-        wi,
-        pdf: pdf_area * distance2 / cos,
-        radiance: emitters.radiance,
-        t_max: distance * F32x8::splat(SHORT_OF_LIGHT),
-        mask: cos.gt(F32x8::ZERO) & distance.gt(F32x8::ZERO),
-    }
+    gathered.add(&incoming.path, mask, incoming.throughput * emission * weight);
 }
 
 /// Writes the rays of the next bounce.
@@ -388,13 +217,15 @@ fn go_on(
     live: Mask8,
     incoming: &Incoming,
     points: &ShadingPoints,
+    sides: &Sides,
     sample: &BsdfSample<F32x8>,
-    (wo, origin, u_roulette): (Vec3<F32x8>, Vec3<F32x8>, F32x8),
+    wo: Vec3<F32x8>,
+    u_roulette: F32x8,
     next: &mut Queue,
 ) {
     let wi = points.frame.to_world(sample.wi);
-    let (origin, right_side) = leaving(ctx, points, origin, wi, wo.z * sample.wi.z);
-    let mut alive = live & !sample.event.failed & right_side;
+    let (origin, leaves) = sides.leaving(wi, wo.z * sample.wi.z);
+    let mut alive = live & !sample.event.failed & leaves;
     let mut throughput = incoming.throughput * sample.f_cos * sample.pdf.recip();
     alive = alive & throughput.largest().gt(F32x8::ZERO);
     if ctx.russian_roulette && depth + 1 >= ROULETTE_FROM {
@@ -403,11 +234,8 @@ fn go_on(
         throughput *= q.recip();
     }
     if alive.any() {
-        let lights = &ctx.world.lights;
-        let pdf_environment = if ctx.plan.environment && matches!(lights.shining_sky(), Some(PreparedSky::Constant(_)))
-        {
-            let p = F32x8::splat(lights.environment_probability());
-            pdf_cosine_hemisphere(sample.wi) * p
+        let pdf_environment = if ctx.effects.has(Effect::Environment) {
+            ctx.world.lights.environment.pdf_ahead(sample.wi)
         } else {
             F32x8::ZERO
         };

@@ -7,7 +7,7 @@ use gonio_accel::Intersect;
 use gonio_io::exr::{self, Metadata, Window};
 use gonio_io::png;
 use gonio_tracer::scene::Scene;
-use gonio_tracer::{Backend, RenderSettings, Rendering};
+use gonio_tracer::{Backend, EffectSet, RenderSettings, Rendering};
 use std::cell::LazyCell;
 use std::path::Path;
 
@@ -18,6 +18,7 @@ pub(super) struct Origin<'a> {
     /// The fingerprint of the world: formed when something wants to say it, once.
     pub(super) scene_hash: LazyCell<String, Box<dyn Fn() -> String + 'a>>,
     pub(super) settings: &'a RenderSettings,
+    pub(super) effects: EffectSet,
     pub(super) backend: Backend,
     pub(super) intersect: Intersect,
     pub(super) times: Times,
@@ -65,7 +66,7 @@ fn metadata(origin: &Origin, rendering: &Rendering) -> Metadata {
         ("scene".to_owned(), origin.scene_file.display().to_string()),
         ("scene_hash".to_owned(), origin.scene_hash.to_string()),
         ("intersect".to_owned(), origin.intersect.to_string()),
-        ("plan".to_owned(), settings.plan.to_string()),
+        ("effects".to_owned(), origin.effects.to_string()),
         ("russian_roulette".to_owned(), settings.russian_roulette.to_string()),
         ("sample_range".to_owned(), format!("0..{}", stats.spp)),
         ("spp_wanted".to_owned(), settings.spp.to_string()),

@@ -47,6 +47,6 @@ pub(super) fn stats(origin: &Origin, rendering: &Rendering) -> Value {
         "russian_roulette": settings.russian_roulette,
         "film_hash": stats.film_hash,
         "scene_hash": origin.scene_hash.as_str(),
-        "plan": settings.plan.to_string(),
+        "effects": origin.effects.to_string(),
     })
 }

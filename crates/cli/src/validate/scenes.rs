@@ -6,7 +6,7 @@
 //! its albedo, because no light comes back to it. Every block of pixels is tested against that number (see
 //! [`crate::statistics`]).
 //!
-//! **scene-hash.** Number of threads and the pruning of the plan never change a bit of the film, nor does the backend if it
+//! **scene-hash.** Number of threads and the pruning of effects never change a bit of the film, nor does the backend if it
 //! finds the same bits as brute force ([`Backend::is_exact`]).
 //!
 //! **scene-mean.** A backend that finds the same hits up to rounding has the same mean picture, within [`SAME_MEAN`].
@@ -21,14 +21,14 @@ use anyhow::{Context, Result};
 use furnace::{FURNACES, Furnace, Shot};
 use gonio_io::png;
 use gonio_lab::{Check, Effort, Options, Outcome};
-use gonio_tracer::{Backend, Picture, Plan};
+use gonio_tracer::{Backend, Picture};
 use std::path::Path;
 use std::time::Instant;
 
 /// Name and meaning of the instruments in this file.
 pub(super) const INSTRUMENTS: [(&str, &str); 4] = [
     ("scene-furnace", "rendered furnaces have their analytic radiance in every block of pixels, with every backend"),
-    ("scene-hash", "exact backends, number of threads and pruning of the plan do not change a bit of a picture"),
+    ("scene-hash", "exact backends, number of threads and pruning of effects do not change a bit of a picture"),
     ("scene-mean", "backends that are exact up to rounding render the same mean picture, within 0.01 %"),
     ("scene-samples", "rendering drops no sample as not finite or out of range"),
 ];
@@ -183,13 +183,14 @@ fn hashes(
 ) -> Result<()> {
     const SPP: u32 = 4; // a bit is as easily wrong in few samples as in many
     let start = Instant::now();
-    let base = Shot { backend: Backend::Obvhs, threads: 1, plan: None, roulette: scene.integrator.russian_roulette };
+    let base =
+        Shot { backend: Backend::Obvhs, threads: 1, every_effect: false, roulette: scene.integrator.russian_roulette };
     let mut variants = Vec::new();
     for backend in Backend::ALL {
         for threads in [1, 2] {
             variants.push(Shot { backend, threads, ..base });
         }
-        variants.push(Shot { backend, plan: Some(Plan::everything()), ..base });
+        variants.push(Shot { backend, every_effect: true, ..base });
     }
     let expected = furnace.render(scene, &base, SPP, options.seed)?.stats.film_hash;
     let mut differing = Vec::new();

@@ -323,6 +323,7 @@ impl Builder {
             meshes: self.meshes,
             instances: self.instances,
             environment,
+            lights: Vec::new(),
             warnings: self.warnings,
         }
     }

@@ -179,6 +179,13 @@ macro_rules! __any_lobe {
                         _ => false,
                     }
                 }
+                fn each_choice(&self, visit: &mut dyn FnMut(&'static str)) {
+                    visit(self.model_name());
+                    match self {
+                        $(Self::$name(lobe) => lobe.each_choice(visit),)*
+                        $(Self::__Borrows(never, _) => $crate::__never!($life never),)?
+                    }
+                }
                 #[inline(always)]
                 fn in_domain(&self) -> R::Mask {
                     match self {
@@ -204,6 +211,12 @@ macro_rules! __any_lobe {
             impl<$($life,)? R: Real> Model for $any<$($life,)? R> {
                 fn is_named(name: &str, has: &dyn Fn(&str) -> bool) -> bool {
                     $(<$lobe as Model>::is_named(name, has))||*
+                }
+                fn model_name(&self) -> &'static str {
+                    match self {
+                        $(Self::$name(lobe) => lobe.model_name(),)*
+                        $(Self::__Borrows(never, _) => $crate::__never!($life never),)?
+                    }
                 }
                 fn each_model(visit: &mut dyn FnMut(&'static ModelInfo)) {
                     $(<$lobe as Model>::each_model(visit);)*

@@ -23,7 +23,7 @@ use super::mix::{Prepared, either_scale, shares};
 use super::{Lobe, Properties, Sample, Transport, Value};
 use crate::energy::AlbedoCurve;
 use crate::frame::both_above;
-use crate::model::{Entry, Parameter, Parameters, Source};
+use crate::model::{Choice, Entry, Parameter, Parameters, Source};
 use crate::real::Real;
 use crate::rgb::Rgb;
 use crate::vec3::Vec3;
@@ -251,6 +251,11 @@ impl<R: Real, T: Parameters<Real = R>, B: Parameters<Real = R>> Parameters for L
     #[inline(always)]
     fn same_code(&self, other: &Self) -> bool {
         self.coat.layering == other.coat.layering && self.top.same_code(&other.top) && self.base.same_code(&other.base)
+    }
+    fn each_choice(&self, visit: &mut dyn FnMut(&'static str)) {
+        visit(self.coat.layering.word());
+        self.top.each_choice(visit);
+        self.base.each_choice(visit);
     }
     #[inline(always)]
     fn in_domain(&self) -> R::Mask {

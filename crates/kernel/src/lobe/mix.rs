@@ -173,6 +173,10 @@ impl<R: Real, A: Parameters<Real = R>, B: Parameters<Real = R>> Parameters for M
     fn same_code(&self, other: &Self) -> bool {
         self.0.same_code(&other.0) && self.1.same_code(&other.1)
     }
+    fn each_choice(&self, visit: &mut dyn FnMut(&'static str)) {
+        self.0.each_choice(visit);
+        self.1.each_choice(visit);
+    }
     #[inline(always)]
     fn in_domain(&self) -> R::Mask {
         self.0.in_domain() & self.1.in_domain()

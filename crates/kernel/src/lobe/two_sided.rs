@@ -83,6 +83,9 @@ impl<L: Parameters> Parameters for TwoSided<L> {
     fn same_code(&self, other: &Self) -> bool {
         self.0.same_code(&other.0)
     }
+    fn each_choice(&self, visit: &mut dyn FnMut(&'static str)) {
+        self.0.each_choice(visit);
+    }
     #[inline(always)]
     fn in_domain(&self) -> <L::Real as Real>::Mask {
         self.0.in_domain()

@@ -93,6 +93,9 @@ impl<R: Real, L: Parameters<Real = R>> Parameters for Weighted<R, L> {
     fn same_code(&self, other: &Self) -> bool {
         self.lobe.same_code(&other.lobe)
     }
+    fn each_choice(&self, visit: &mut dyn FnMut(&'static str)) {
+        self.lobe.each_choice(visit);
+    }
     #[inline(always)]
     fn in_domain(&self) -> R::Mask {
         self.weight.within(0.0, 1.0) & self.lobe.in_domain()

@@ -56,6 +56,9 @@ macro_rules! model {
             fn is_named(name: &str, has: &dyn Fn(&str) -> bool) -> bool {
                 name == $model $(&& ($(has($with))||+))?
             }
+            fn model_name(&self) -> &'static str {
+                $model
+            }
             fn each_model(visit: &mut dyn FnMut(&'static $crate::model::ModelInfo)) {
                 visit(const { &$crate::model::ModelInfo::declared(
                     $model, concat!($($doc),*), <$name<f32> as $crate::model::Parameters>::ENTRIES,
@@ -107,6 +110,10 @@ macro_rules! group {
             #[allow(unused_variables)]
             fn same_code(&self, other: &Self) -> bool {
                 true $(&& $crate::__field!(same self.$field, other.$field, $t $(<$r>)?))*
+            }
+            #[allow(unused_variables)]
+            fn each_choice(&self, visit: &mut dyn FnMut(&'static str)) {
+                $($crate::__field!(choices self.$field, visit, $t $(<$r>)?);)*
             }
             #[inline(always)]
             fn in_domain(&self) -> R::Mask {
@@ -180,6 +187,7 @@ macro_rules! one_of {
             fn same_code(&self, _: &Self) -> bool {
                 true
             }
+            fn each_choice(&self, _: &mut dyn FnMut(&'static str)) {}
             #[inline(always)]
             fn in_domain(&self) -> R::Mask {
                 <R::Mask as $crate::Mask>::splat(true) $(& $crate::__field!(domain self.$field, [$q] R))*
@@ -256,6 +264,9 @@ macro_rules! one_of {
             #[inline(always)]
             fn same_code(&self, other: &Self) -> bool {
                 core::mem::discriminant(self) == core::mem::discriminant(other)
+            }
+            fn each_choice(&self, visit: &mut dyn FnMut(&'static str)) {
+                visit(match self { $(Self::$variant { .. } => stringify!($variant)),* });
             }
             #[inline(always)]
             fn in_domain(&self) -> R::Mask {
@@ -349,6 +360,11 @@ macro_rules! __field {
     (same $a:expr, $b:expr, R) => { true };
     (same $a:expr, $b:expr, $group:ident<R>) => { $crate::model::Parameters::same_code(&$a, &$b) };
     (same $a:expr, $b:expr, $choice:ident) => { $a == $b };
+
+    (choices $x:expr, $visit:ident, Rgb<R>) => {};
+    (choices $x:expr, $visit:ident, R) => {};
+    (choices $x:expr, $visit:ident, $group:ident<R>) => { $crate::model::Parameters::each_choice(&$x, $visit) };
+    (choices $x:expr, $visit:ident, $choice:ident) => { $visit($crate::model::Choice::word($x)) };
 
     (domain $x:expr, [$q:expr] Rgb<R>) => { { let q = $q; q.contains($x.r) & q.contains($x.g) & q.contains($x.b) } };
     (domain $x:expr, [$q:expr] R) => { ($q).contains($x) };

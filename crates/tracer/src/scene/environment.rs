@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use gonio_kernel::Rgb;
 
+use crate::effects::{Effect, EffectSet};
 use crate::picture::Picture;
 
 /// Light from infinitely far away, and who sees it.
@@ -42,6 +43,11 @@ impl Environment {
     /// The same radiance from everywhere.
     pub fn constant(radiance: Rgb<f32>) -> Self {
         Self { sky: Sky::Constant(radiance), camera_visible: true, illuminates: true }
+    }
+
+    /// What it calls for.
+    pub(crate) fn effects(&self) -> EffectSet {
+        EffectSet::when(!self.is_dark() && (self.camera_visible || self.illuminates), Effect::Environment)
     }
 
     /// Whether no light comes from it at all.

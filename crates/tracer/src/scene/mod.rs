@@ -3,21 +3,27 @@
 //! A scene is built in code or read from files by the crate `gonio-io`. Each field states its range: all numbers are finite,
 //! all indices point at something, every mesh has a triangle with an area.
 
+use std::sync::Arc;
+
 use glam::DAffine3;
 use gonio_kernel::lobe::{AnyLobe, Layering};
 use gonio_kernel::{Parameters, Rgb};
 
+use crate::light::LightSource;
 use crate::material::CustomLobe;
 use crate::normal_map::NormalMap;
 use crate::texture::Texture;
 
 mod camera;
 mod environment;
+pub mod fields;
 
 pub use camera::{Camera, CameraError, CameraSpec};
 pub use environment::{Environment, Sky, SkyMap};
 /// Largest radiance a material or the environment may have: the film's range ends a little above.
 pub const MAX_RADIANCE: f64 = 1e6;
+/// Largest intensity of a light: 10⁶ W/(m² sr) over a square kilometre.
+pub const MAX_INTENSITY: f64 = 1e12;
 
 /// How far a scene has come on its way to being rendered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +68,8 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     /// What lies behind everything.
     pub environment: Environment,
+    /// Lights that are no triangles.
+    pub lights: Vec<Arc<dyn LightSource>>,
     /// What was loaded differently from how it was written: one sentence each.
     pub warnings: Vec<String>,
 }

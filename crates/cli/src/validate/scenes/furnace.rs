@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use gonio_accel::Intersect;
 use gonio_kernel::{Lobe, Rgb};
 use gonio_tracer::scene::{Scene, Sky};
-use gonio_tracer::{Backend, Plan, RenderSettings, Rendering, World, render};
+use gonio_tracer::{Backend, Prepared, RenderSettings, Rendering, World, render};
 use std::fmt;
 use std::iter;
 use std::ops::ControlFlow;
@@ -87,8 +87,8 @@ pub(super) struct Shot {
     pub(super) backend: Backend,
     /// 0 for all.
     pub(super) threads: usize,
-    /// `None` for the scene's own.
-    pub(super) plan: Option<Plan>,
+    /// Whether to look at every effect, needed or not.
+    pub(super) every_effect: bool,
     pub(super) roulette: bool,
 }
 
@@ -99,9 +99,9 @@ impl fmt::Display for Shot {
             1 => "1 thread".to_owned(),
             n => format!("{n} threads"),
         };
-        let plan = if self.plan.is_some() { "plan of everything" } else { "own plan" };
+        let effects = if self.every_effect { "every effect" } else { "own effects" };
         let roulette = if self.roulette { "" } else { ", no roulette" };
-        write!(f, "{}, {threads}, {plan}{roulette}", self.backend)
+        write!(f, "{}, {threads}, {effects}{roulette}", self.backend)
     }
 }
 
@@ -111,7 +111,7 @@ impl Furnace {
         let mut shots = Vec::new();
         let others = Backend::ALL.into_iter().filter(|backend| *backend != Backend::Obvhs);
         for backend in iter::once(Backend::Obvhs).chain(others) {
-            let shot = Shot { backend, threads: 0, plan: None, roulette: true };
+            let shot = Shot { backend, threads: 0, every_effect: false, roulette: true };
             shots.push(shot);
             if matches!(self.law, Law::ClosedRoom) {
                 shots.push(Shot { roulette: false, ..shot });
@@ -128,11 +128,11 @@ impl Furnace {
     /// Renders the scene.
     pub(super) fn render(&self, scene: &Scene, shot: &Shot, spp: u32, seed: u64) -> Result<Rendering> {
         let world = World::new(scene).context("scene")?;
-        let accel = shot.backend.build(world.geometry(), Intersect::Robust)?;
-        let mut settings = RenderSettings { spp, seed, threads: shot.threads, ..RenderSettings::of(scene, &world) };
+        let prepared = Prepared::new(world, shot.backend, Intersect::Robust)?;
+        let mut settings = RenderSettings { spp, seed, threads: shot.threads, ..RenderSettings::of(scene) };
         settings.russian_roulette = shot.roulette;
-        settings.plan = shot.plan.unwrap_or(settings.plan);
-        Ok(render(&world, &*accel, &settings, &mut |_| ControlFlow::Continue(())))
+        settings.every_effect = shot.every_effect;
+        Ok(render(&prepared, &settings, &mut |_| ControlFlow::Continue(())))
     }
 
     /// The radiance of every pixel.
