@@ -6,13 +6,13 @@ mod obj;
 use std::fs;
 use std::time::{Duration, Instant};
 
-use crate::support::{Folder, data};
+use crate::support::{Folder, cornell_box, data};
 use gonio_io::exr::{self, Metadata};
 use gonio_io::png;
 use gonio_kernel::Rgb;
-use gonio_kernel::lobe::{AnyLobe, Lambert};
-use gonio_tracer::Picture;
+use gonio_kernel::lobe::{AnyLobe, Lambert, Layering};
 use gonio_tracer::scene::Environment;
+use gonio_tracer::{Picture, World, WorldError};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
@@ -102,6 +102,24 @@ fn every_key_of_film_camera_and_integrator_arrives() {
     assert_eq!((integrator.max_depth, integrator.russian_roulette, integrator.seed), (0, false, u64::MAX));
     let dark = "the scene has no light: the picture will be black";
     assert_eq!(folder.warnings(&scene), ["tri.obj: faces without a material are drawn in grey", dark]);
+}
+
+#[test]
+fn a_scene_built_in_code_is_refused_by_the_name_of_its_material() {
+    let mut scene = cornell_box(8, 1);
+    let coat = scene.materials[0].lobes[0].clone().as_coat(Layering::Reciprocal);
+    scene.materials[0].lobes = vec![coat; 4];
+    let name = scene.materials[0].name.clone();
+    let error = World::new(&scene).unwrap_err();
+    assert!(matches!(&error, WorldError::Lobes { material, .. } if *material == name), "{error:?}");
+    assert_eq!(
+        error.to_string(),
+        format!("material \"{name}\": nothing shines through this lobe: it cannot be a coat")
+    );
+    let mut scene = cornell_box(8, 1);
+    scene.meshes[0].positions[0] = [1e30, 0.0, 0.0];
+    let text = World::new(&scene).unwrap_err().to_string();
+    assert!(text.ends_with("of instance 0 lies outside of what f32 rays can reach"), "{text}");
 }
 
 #[test]

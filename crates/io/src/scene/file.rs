@@ -1,4 +1,4 @@
-//! The scene file: its sections, keys and defaults. `docs/scene-format.md` is written from this file.
+//! The scene file: its sections and keys; defaults are those of the description. `docs/scene-format.md` is written from this file.
 
 use std::path::Path;
 
