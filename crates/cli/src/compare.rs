@@ -6,10 +6,11 @@ mod measure;
 
 use crate::output::{Target, extension, write_text};
 use crate::usage::Usage;
-use anyhow::Result;
+use anyhow::{Context, Result};
+use gonio_report::json;
 use gonio_tracer::image::{Metadata, Picture, read_picture, write_exr, write_png};
 use measure::{Difference, difference, magnified};
-use serde_json::json;
+use serde_json::json as object;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -63,7 +64,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         write_difference(path, &a, &found)?;
     }
     let flip = flip(&a, &b);
-    let text = if args.json { format!("{:#}\n", as_json(args, &found, flip)) } else { as_text(&a, &found, flip) };
+    let text = if args.json {
+        json::text(&as_json(args, &found, flip)).context("the comparison cannot be written as JSON")?
+    } else {
+        as_text(&a, &found, flip)
+    };
     write_text(&Target::Stdout, &text)?;
     Ok(ExitCode::from(if args.test && !found.explained_by_chance() { 3 } else { 0 }))
 }
@@ -140,7 +145,7 @@ fn as_text(a: &Picture, found: &Difference, flip: Option<f64>) -> String {
 }
 
 fn as_json(args: &Args, found: &Difference, flip: Option<f64>) -> serde_json::Value {
-    json!({
+    object!({
         "a": args.a.display().to_string(),
         "b": args.b.display().to_string(),
         "mean_a": found.means[0],

@@ -7,19 +7,16 @@
 
 mod census;
 mod census_table;
-pub(crate) mod draw;
-mod grade;
-pub(crate) mod html;
-mod report;
 mod scenes;
 mod table;
 
+use crate::environment;
 use crate::output::{Target, write_text};
 use crate::random::seed;
 use crate::usage::{Usage, spinner};
 use anyhow::{Context, Result};
 use gonio_lab::{Check, Effort, Options, Outcome, validate_kernel};
-use report::Report;
+use gonio_report::{Header, Instrument, Validation, json};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -100,7 +97,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     validate_kernel(&options, &mut sink);
     let pictures = scenes::run(&options, &args.out, &mut sink)?;
-    let table = census::run(&options, &args.out, &mut sink)?;
+    let log = census::run(&options, &args.out, &mut sink)?;
     if args.plant_failure {
         sink(planted_failure());
     }
@@ -113,11 +110,24 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         return Err(Usage(format!("--only {only} matches nothing; instruments are {}", names.join(", "))).into());
     }
 
-    let report = Report::new(&options, checks, table, instruments(), start.elapsed().as_secs_f64());
+    let header = Header::new(
+        env!("CARGO_PKG_VERSION"),
+        options.effort.name(),
+        options.seed,
+        options.only.clone(),
+        &checks,
+        start.elapsed().as_secs_f64(),
+        environment::here(),
+    );
+    let instruments = instruments().into_iter().map(|(name, proves)| Instrument { name, proves }).collect();
+    let report = Validation { header, instruments, checks, census: log };
     let json = json_text(&report)?;
     write_text(&Target::File(args.out.join("report.json")), &json)?;
     write_text(&Target::File(args.out.join("summary.json")), &json_text(&report.totals())?)?;
-    write_text(&Target::File(args.out.join("report.html")), &html::page(&report, &pictures, &plots))?;
+    write_text(
+        &Target::File(args.out.join("report.html")),
+        &report.page(&pictures, census_table::table(&report.census).as_ref(), &plots),
+    )?;
     let printed = if args.json {
         json
     } else {
@@ -128,7 +138,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn json_text(report: &impl Serialize) -> Result<String> {
-    Ok(serde_json::to_string_pretty(report).context("the report cannot be written as JSON")? + "\n")
+    json::text(report).context("the report cannot be written as JSON")
 }
 
 fn planted_failure() -> Check {

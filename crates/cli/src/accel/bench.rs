@@ -10,12 +10,13 @@ mod table;
 
 use super::{backends, check_distinct, not_built, specimen};
 use crate::census::specimen::Specimen;
-use crate::environment::Environment;
+use crate::environment;
 use crate::output::{Target, write_text};
 use crate::usage::{count, spinner};
 use anyhow::{Context, Result};
 use gonio_accel::{Accel, Hit8, Intersect, Ray8, RayKind};
 use gonio_kernel::Mask8;
+use gonio_report::{Environment, json};
 use gonio_tracer::Backend;
 use serde::Serialize;
 use sets::RaySet;
@@ -145,10 +146,10 @@ pub(super) fn run(args: &Args) -> Result<ExitCode> {
         builds,
         results,
         not_run: not_built(),
-        environment: Environment::here(),
+        environment: environment::here(),
     };
     let printed = if args.json {
-        serde_json::to_string_pretty(&report).context("the measurement cannot be written as JSON")? + "\n"
+        json::text(&report).context("the measurement cannot be written as JSON")?
     } else {
         table::text(&report)
     };

@@ -7,11 +7,12 @@ use crate::census::judge::{Finding, What, judge};
 use crate::census::record::{Log, Row};
 use crate::census::specimen::Specimen;
 use crate::census::{Plan, Witness};
-use crate::environment::Environment;
+use crate::environment;
 use crate::output::{Output, Target, write_text};
 use crate::usage::{Usage, count, spinner};
 use anyhow::{Context, Result};
 use gonio_accel::Intersect;
+use gonio_report::{Environment, json};
 use gonio_tracer::Backend;
 use serde::Serialize;
 use std::fmt::Write;
@@ -154,10 +155,10 @@ pub(super) fn run(args: &Args) -> Result<ExitCode> {
         seconds: start.elapsed().as_secs_f64(),
         findings: &findings,
         log: &log,
-        environment: Environment::here(),
+        environment: environment::here(),
     };
     if let Some(target) = &args.json {
-        let json = serde_json::to_string_pretty(&report).context("the census cannot be written as JSON")? + "\n";
+        let json = json::text(&report).context("the census cannot be written as JSON")?;
         write_text(target, &json)?;
     }
     if args.json != Some(Target::Stdout) {

@@ -1,6 +1,7 @@
 //! What is measured of a difference.
 
 use crate::statistics::{level, test_blocks, tests};
+use gonio_report::around_mid_grey;
 use gonio_tracer::image::Picture;
 
 /// Keeps relMSE finite where the reference is black (Rousselle et al. 2011).
@@ -11,8 +12,6 @@ const NOTICEABLE: f64 = 1e-3;
 /// Means of blocks that differ by less than this of the picture's mean differ by rounding: of the film, of f32, of the tests
 /// that a backend makes.
 const ROUNDING: f64 = 1e-6;
-/// Mid grey: 0.5 in sRGB.
-const MID_GREY: f64 = 0.214;
 
 /// How B differs from A, by channel.
 pub(super) struct Difference {
@@ -125,7 +124,7 @@ pub(super) fn magnified(a: &Picture, difference: &Picture) -> (Picture, f64) {
     let most = sizes.get(sizes.len().saturating_sub(1 + sizes.len() / 100)).map_or(0.0, |&x| f64::from(x));
     let most = if most > 0.0 { most } else { sizes.last().map_or(0.0, |&x| f64::from(x)) };
     let gain = if most > 0.0 { mean / most } else { 1.0 };
-    let show = |x: f32| (MID_GREY * (1.0 + gain * f64::from(x) / mean)) as f32;
+    let show = |x: f32| around_mid_grey(gain * f64::from(x) / mean);
     (Picture { rgb: difference.rgb.iter().map(|rgb| rgb.map(show)).collect(), ..*difference }, gain)
 }
 

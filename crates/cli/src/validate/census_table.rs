@@ -1,14 +1,13 @@
 //! The census as a table of the page: families of rays against backends, all specimens and scales together.
 
-use super::html::escape;
 use crate::census::ORACLE;
 use crate::census::family::Family;
 use crate::census::judge::is_judged;
 use crate::census::record::{Log, Row};
-use std::fmt::Write;
+use gonio_report::{Cell, Html, Table, Tone};
 
 /// The table, or nothing if there was no census.
-pub(super) fn table(log: &Log) -> String {
+pub(super) fn table(log: &Log) -> Option<Table> {
     let mut backends: Vec<&str> = Vec::new();
     for row in &log.rows {
         if row.backend != ORACLE && !backends.contains(&row.backend.as_str()) {
@@ -16,47 +15,37 @@ pub(super) fn table(log: &Log) -> String {
         }
     }
     if backends.is_empty() {
-        return String::new();
+        return None;
     }
-    let mut page =
-        "<h2>Census</h2>\n<p class=\"soft\">Rays that a backend answers otherwise than brute force does, of all that \
-                    were cast at all specimens and scales; and leaks, rays that got through where a surface must stop \
-                    them. Grey is what nothing is required of: rays aimed at edges, vertices and planes, of a backend \
-                    with a triangle test of its own.</p>\n<table><thead><tr><th>Rays</th>"
-            .to_owned();
-    for backend in &backends {
-        let _ = write!(page, "<th>{}</th>", escape(backend));
-    }
-    page += "</tr></thead><tbody>\n";
+    let mut table = Table::new(std::iter::once("Rays").chain(backends.iter().copied()));
     for family in Family::ALL {
-        let _ = write!(page, "<tr><td>{}</td>", escape(&family.to_string()));
-        for backend in &backends {
+        let cells = backends.iter().map(|backend| {
             let of = |row: &&Row| row.backend == *backend && row.family == family;
-            page += &cell(backend, &log.rows.iter().filter(of).collect::<Vec<_>>());
-        }
-        page += "</tr>\n";
+            cell(backend, &log.rows.iter().filter(of).collect::<Vec<_>>())
+        });
+        table.row(std::iter::once(Cell::new(family.to_string())).chain(cells));
     }
-    page + "</tbody></table>\n"
+    Some(table)
 }
 
-fn cell(backend: &str, rows: &[&Row]) -> String {
+fn cell(backend: &str, rows: &[&Row]) -> Cell {
     let sum = |count: fn(&Row) -> u64| rows.iter().map(|row| count(row)).sum::<u64>();
     let (rays, differ, leaks) = (sum(|r| r.rays), sum(Row::exceptions), sum(|r| r.leaks));
     let judged = rows.iter().any(|row| is_judged(row));
-    let class = match (judged, differ) {
-        (false, _) => "soft",
-        (true, 0) => "good",
-        (true, _) => "none",
+    let tone = match (judged, differ) {
+        (false, _) => Tone::Soft,
+        (true, 0) => Tone::Good,
+        (true, _) => Tone::Open,
     };
     let leaks = if leaks > 0 { format!(", {leaks} leak") } else { String::new() };
-    let name = escape(backend);
-    format!("<td class=\"number\" data-name=\"{name}\"><span class=\"{class}\">{differ}</span> of {rays}{leaks}</td>")
+    Cell::number(backend, Html::toned(tone, &differ.to_string()).and(format!(" of {rays}{leaks}")))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::census::Standard;
+    use gonio_report::Page;
 
     #[test]
     fn counts_are_added_over_specimens_and_brute_has_no_column() {
@@ -71,10 +60,12 @@ mod tests {
             row("obvhs", Standard::Exact, 0),
             row("embree", Standard::Close, 3),
         ];
-        let page = table(&Log { rows, ..Log::default() });
+        let mut page = Page::new("census");
+        page.table(&table(&Log { rows, ..Log::default() }).unwrap());
+        let page = page.finish();
         assert!(page.contains("<th>obvhs</th><th>embree</th>") && !page.contains("<th>brute</th>"), "{page}");
         assert!(page.contains("<span class=\"good\">0</span> of 200"), "{page}");
         assert!(page.contains("<span class=\"none\">3</span> of 100"), "{page}");
-        assert_eq!(table(&Log::default()), "");
+        assert!(table(&Log::default()).is_none());
     }
 }

@@ -20,6 +20,7 @@ use crate::statistics::{Worst, level, tests, worst_block};
 use anyhow::{Context, Result};
 use furnace::{FURNACES, Furnace, Shot};
 use gonio_lab::{Check, Effort, Options, Outcome};
+use gonio_report::{Exhibit, Speed};
 use gonio_tracer::image::{Picture, write_png};
 use gonio_tracer::{Backend, Plan};
 use std::path::Path;
@@ -32,26 +33,6 @@ pub(super) const INSTRUMENTS: [(&str, &str); 4] = [
     ("scene-mean", "backends that are exact up to rounding render the same mean picture, within 0.01 %"),
     ("scene-samples", "rendering drops no sample as not finite or out of range"),
 ];
-
-/// A picture for the report.
-pub(super) struct Exhibit {
-    pub(super) name: &'static str,
-    pub(super) answer: String,
-    /// PNG files: as rendered, and the deviation from the answer, magnified around mid grey.
-    pub(super) rendered: Vec<u8>,
-    pub(super) deviation: Vec<u8>,
-    /// Of the first rendering with each backend.
-    pub(super) speeds: Vec<Speed>,
-}
-
-/// How fast a backend rendered.
-pub(super) struct Speed {
-    pub(super) backend: String,
-    pub(super) msamples_per_second: f64,
-}
-
-/// How much the deviation is magnified in the report.
-pub(super) const MAGNIFIED: f64 = 10.0;
 
 /// How far, as a part of it, the mean of a picture may change with the backend: 0.01 %. Samples are the same but for the
 /// paths of those rays that meet an edge.
@@ -273,8 +254,7 @@ fn exhibit(
     let mut deviation = picture.clone();
     for rgb in &mut deviation.rgb {
         for (x, expected) in rgb.iter_mut().zip(expected) {
-            // 0.214 is mid grey in sRGB.
-            *x = (0.214 * (1.0 + MAGNIFIED * (f64::from(*x) / expected - 1.0))) as f32;
+            *x = Exhibit::shade((*x).into(), expected);
         }
     }
     let save = |name: String, picture: &Picture, exposure: f32| -> Result<Vec<u8>> {
@@ -284,7 +264,7 @@ fn exhibit(
     };
     let [r, g, b] = expected;
     Ok(Exhibit {
-        name: furnace.name,
+        name: furnace.name.to_owned(),
         answer: format!("{}: {r:.5}, {g:.5}, {b:.5}", furnace.law()),
         rendered: save(format!("{}.png", furnace.name), picture, scene.film.exposure)?,
         deviation: save(format!("{}-deviation.png", furnace.name), &deviation, 0.0)?,

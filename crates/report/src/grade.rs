@@ -1,10 +1,10 @@
-//! How close a check came to its limit, and how numbers are shown.
+//! How close a check came to its limit, and how a group of them ended.
 
-use gonio_lab::{Check, Outcome};
+use crate::check::{Check, Outcome};
 
 /// Measured over limit, whichever way round the check is: 1 is the limit, above it the check fails. 0 if nothing was
 /// found at all, infinite if nothing was allowed.
-pub(super) fn severity(check: &Check) -> f64 {
+pub fn severity(check: &Check) -> f64 {
     let (over, under) = if check.meaning.trim_end().ends_with('≥') {
         (check.limit, check.measured)
     } else {
@@ -18,7 +18,7 @@ pub(super) fn severity(check: &Check) -> f64 {
 }
 
 /// The check that came closest to its limit or went farthest beyond, among those that ran; the first of equals.
-pub(super) fn worst<'a>(checks: impl Iterator<Item = &'a Check>) -> Option<&'a Check> {
+pub fn worst<'a>(checks: impl Iterator<Item = &'a Check>) -> Option<&'a Check> {
     let mut worst: Option<&Check> = None;
     for check in checks.filter(|check| !matches!(check.outcome, Outcome::NotRun(_))) {
         if worst.is_none_or(|w| (check.failed(), severity(check)) > (w.failed(), severity(w))) {
@@ -28,34 +28,8 @@ pub(super) fn worst<'a>(checks: impl Iterator<Item = &'a Check>) -> Option<&'a C
     worst
 }
 
-/// A number in a few characters: integers as they are, others with three digits.
-pub(super) fn short(x: f64) -> String {
-    let size = x.abs();
-    if x == 0.0 {
-        "0".to_owned()
-    } else if size < 1e6 && x.fract() == 0.0 {
-        format!("{x:.0}")
-    } else if (0.01..1000.0).contains(&size) {
-        format!(
-            "{:.*}",
-            if size >= 100.0 {
-                1
-            } else if size >= 1.0 {
-                2
-            } else {
-                4
-            },
-            x
-        )
-    } else if size >= 1e300 {
-        "∞".to_owned() // the reports' stand-in for it
-    } else {
-        format!("{x:.1e}")
-    }
-}
-
 /// Instruments in order of appearance, each with its checks.
-pub(super) fn groups(checks: &[Check]) -> Vec<(&str, Vec<&Check>)> {
+pub fn groups(checks: &[Check]) -> Vec<(&str, Vec<&Check>)> {
     let mut groups: Vec<(&str, Vec<&Check>)> = Vec::new();
     for check in checks {
         match groups.iter_mut().find(|(name, _)| *name == check.instrument) {
@@ -67,7 +41,7 @@ pub(super) fn groups(checks: &[Check]) -> Vec<(&str, Vec<&Check>)> {
 }
 
 /// How a group ended: PASS, FAIL or NOT RUN.
-pub(super) fn verdict(group: &[&Check]) -> &'static str {
+pub fn verdict(group: &[&Check]) -> &'static str {
     if group.iter().any(|check| check.failed()) {
         "FAIL"
     } else if group.iter().any(|check| check.outcome == Outcome::Passed) {
@@ -75,6 +49,15 @@ pub(super) fn verdict(group: &[&Check]) -> &'static str {
     } else {
         "NOT RUN"
     }
+}
+
+/// How many passed, failed, and could not run.
+pub(crate) fn counts<'a>(checks: impl Iterator<Item = &'a Check>) -> [usize; 3] {
+    checks.fold([0; 3], |[passed, failed, not_run], check| match check.outcome {
+        Outcome::Passed => [passed + 1, failed, not_run],
+        Outcome::Failed => [passed, failed + 1, not_run],
+        Outcome::NotRun(_) => [passed, failed, not_run + 1],
+    })
 }
 
 #[cfg(test)]
@@ -102,14 +85,5 @@ mod tests {
         assert_eq!(severity(&check(1.0, 0.0, "leaks ≤")), f64::INFINITY);
         assert_eq!(severity(&check(0.0, 1.0, "noticed ≥")), f64::INFINITY);
         assert_eq!(severity(&check(f64::NAN, 1.0, "error ≤")), f64::INFINITY);
-    }
-
-    #[test]
-    fn numbers_are_short() {
-        for (x, text) in
-            [(0.0, "0"), (12.0, "12"), (0.25, "0.2500"), (3.456, "3.46"), (1.5e-7, "1.5e-7"), (f64::MAX, "∞")]
-        {
-            assert_eq!(short(x), text);
-        }
     }
 }
