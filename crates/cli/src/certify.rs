@@ -5,8 +5,7 @@ mod count;
 
 use crate::environment;
 use crate::output::{Target, probe, write_text};
-use crate::random::seed;
-use crate::usage::spinner;
+use crate::usage::{seed, spinner};
 use anyhow::{Context, Result, anyhow};
 use count::count;
 use gonio_lab::{Call, Certificate, Count, Effort, Options, certify};

@@ -2,14 +2,13 @@
 
 #[cfg(feature = "flip")]
 mod flip;
-mod measure;
 
 use crate::output::{Target, extension, write_text};
 use crate::usage::Usage;
 use anyhow::{Context, Result};
 use gonio_report::json;
 use gonio_tracer::image::{Metadata, Picture, read_picture, write_exr, write_png};
-use measure::{Difference, difference, magnified};
+use gonio_verify::difference::{Difference, difference, magnified};
 use serde_json::json as object;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

@@ -1,22 +1,16 @@
 //! `gonio validate`: every physical check, one table, one report, one exit code.
 //!
-//! Three groups of instruments: those of `gonio-lab` on the kernel's lobes, furnace scenes through the whole tracer
-//! ([`scenes`]), and the census of the ray-casting backends ([`census`], by [`crate::census`]). Checks that are not statistical are exact. The
-//! statistical ones share one family-wise significance of 0.01 per run, split in halves: [`SIGNIFICANCE`] for the scenes,
-//! the same for the kernel. What cannot run is named and never counted as passed.
+//! What is measured belongs to `gonio-verify`, what the report looks like to `gonio-report`.
 
-mod census;
-mod census_table;
-mod scenes;
 mod table;
 
 use crate::environment;
 use crate::output::{Target, write_text};
-use crate::random::seed;
-use crate::usage::{Usage, spinner};
+use crate::usage::{Usage, seed, spinner};
 use anyhow::{Context, Result};
-use gonio_lab::{Check, Effort, Options, Outcome, validate_kernel};
+use gonio_lab::{Check, Effort, Options, Outcome};
 use gonio_report::{Header, Instrument, Validation, json};
+use gonio_verify::{census, instruments, validate};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -61,12 +55,6 @@ pub(crate) struct Args {
     plant_failure: bool,
 }
 
-/// Name of every instrument and what it proves.
-fn instruments() -> Vec<(&'static str, &'static str)> {
-    let own = [scenes::INSTRUMENTS.as_slice(), census::INSTRUMENTS.as_slice()].concat();
-    gonio_lab::instruments().iter().copied().chain(own).collect()
-}
-
 /// Runs the subcommand.
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if args.list {
@@ -95,9 +83,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
         checks.push(check);
     };
-    validate_kernel(&options, &mut sink);
-    let pictures = scenes::run(&options, &args.out, &mut sink)?;
-    let log = census::run(&options, &args.out, &mut sink)?;
+    let found = validate(&options, &args.out, &mut sink)?;
     if args.plant_failure {
         sink(planted_failure());
     }
@@ -120,13 +106,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         environment::here(),
     );
     let instruments = instruments().into_iter().map(|(name, proves)| Instrument { name, proves }).collect();
-    let report = Validation { header, instruments, checks, census: log };
+    let report = Validation { header, instruments, checks, census: found.census };
     let json = json_text(&report)?;
     write_text(&Target::File(args.out.join("report.json")), &json)?;
     write_text(&Target::File(args.out.join("summary.json")), &json_text(&report.totals())?)?;
     write_text(
         &Target::File(args.out.join("report.html")),
-        &report.page(&pictures, census_table::table(&report.census).as_ref(), &plots),
+        &report.page(&found.exhibits, census::table(&report.census).as_ref(), &plots),
     )?;
     let printed = if args.json {
         json
@@ -152,9 +138,4 @@ fn planted_failure() -> Check {
         detail: "not a measurement".to_owned(),
         seconds: 0.0,
     }
-}
-
-/// Whether `--only` asks for a check.
-fn wanted(options: &Options, instrument: &str, subject: &str) -> bool {
-    options.only.as_ref().is_none_or(|only| only == instrument || subject.contains(only.as_str()))
 }

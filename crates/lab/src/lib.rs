@@ -80,7 +80,7 @@ pub mod plots;
 mod precision;
 mod probe;
 mod quadrature;
-mod random;
+pub mod random;
 mod reciprocity;
 mod reference;
 mod run;

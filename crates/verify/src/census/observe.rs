@@ -1,121 +1,14 @@
-//! The ray census: the same rays through every ray-casting backend, and every disagreement by name.
-//!
-//! `brute` tests every triangle and is the oracle. A [`specimen`] is cast at by [`family`] after family of rays, those that
-//! renderers cast and those that break tracers, at several scales. Every backend is asked for the nearest hit, for
-//! occlusion, and for occlusion through an opacity filter. Where brute cannot look at all rays (its cost is rays times
-//! triangles) it looks at an even part of them, the others are compared among themselves, and brute is asked about each ray
-//! that they do not agree on; without end where the answer counts against a backend, as long as its patience lasts elsewhere.
-//!
-//! What counts as agreement is the backend's [`Standard`]; what may be left over is in [`judge`]. A census that sees nothing
-//! proves nothing: backends that are wrong on purpose ([`faults`]) must be noticed.
-//!
-//! `gonio accel census` runs it over a scene, `gonio validate` over generated specimens and a shipped scene.
+//! One specimen at one scale: rays are cast, everybody is asked, answers are compared and counted.
 
-pub(crate) mod aim;
-pub(crate) mod answer;
-pub(crate) mod family;
-pub(crate) mod faults;
-pub(crate) mod inside;
-pub(crate) mod judge;
-pub(crate) mod meshes;
-pub(crate) mod rays;
-pub(crate) mod record;
-pub(crate) mod specimen;
-pub(crate) mod topology;
-
-use answer::{Answer, Answers, Kind};
-use anyhow::{Context, Result};
-use family::Family;
-use gonio_accel::{Accel, Intersect, Ray8};
+use super::answer::{self, Answer, Answers, Kind};
+use super::contender::{Standard, Witness};
+use super::family::Family;
+use super::rays::{Caster, Packet, pack};
+use super::record::{Disagreement, Log, Row, Told};
+use super::specimen::Specimen;
+use super::{aim, judge};
+use gonio_accel::{Accel, Ray8};
 use gonio_kernel::{F32x8, Vec3};
-use gonio_tracer::Backend;
-use rays::{Caster, Packet};
-use record::{Disagreement, Log, Row, Told};
-use serde::Serialize;
-use specimen::Specimen;
-
-/// How a backend is compared with the oracle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Standard {
-    /// Every bit.
-    Exact,
-    /// Hit or miss, and the triangle or the distance; see [`answer::compare`]. A few exceptions are allowed.
-    Close,
-    /// As close, but nothing is required.
-    Reported,
-}
-
-impl Standard {
-    /// What is required of a backend. A fast test promises nothing at edges.
-    pub(crate) fn of(backend: Backend, intersect: Intersect) -> Self {
-        match intersect {
-            Intersect::Fast if backend != Backend::Brute => Self::Reported,
-            _ if backend.is_exact() => Self::Exact,
-            _ => Self::Close,
-        }
-    }
-}
-
-/// A backend under observation.
-pub(crate) struct Witness {
-    pub(crate) name: String,
-    pub(crate) accel: Box<dyn Accel>,
-    pub(crate) standard: Standard,
-}
-
-/// What a census does.
-pub(crate) struct Plan<'a> {
-    /// Who is looked at besides brute.
-    pub(crate) witnesses: &'a dyn Fn(&Specimen) -> Result<Vec<Witness>>,
-    pub(crate) scales: &'a [f64],
-    /// Packets of eight rays of each family, at each scale.
-    pub(crate) packets: &'a dyn Fn(Family) -> u64,
-    pub(crate) seed: u64,
-    /// How many pairs of packet and triangle brute may look at in all, judged disputes not counted; and as many
-    /// again for disputes that are only listed.
-    pub(crate) brute_budget: u64,
-}
-
-/// Casts at a specimen at every scale. `progress` hears of every family before it begins.
-///
-/// # Errors
-/// If a backend cannot be built, or a scale takes the specimen beyond what rays can reach.
-pub(crate) fn run(
-    specimen: &Specimen,
-    plan: &Plan,
-    log: &mut Log,
-    progress: &mut dyn FnMut(f64, Family),
-) -> Result<()> {
-    for &scale in plan.scales {
-        let scaled = specimen.scaled(scale).with_context(|| format!("{} at scale {scale}", specimen.name))?;
-        let oracle = Backend::Brute.build(&scaled.geometry, Intersect::Robust)?;
-        let mut witnesses = (plan.witnesses)(&scaled)?;
-        // The first is the reference: one that is right to the last bit, if there is one.
-        witnesses.sort_by_key(|witness| witness.standard != Standard::Exact);
-        let scout = witnesses.first().map_or(&*oracle, |witness| &*witness.accel);
-        let wanted = |family: &Family| (plan.packets)(*family) > 0;
-        let inside = Family::ALL.iter().any(|family| family.is_inside() && wanted(family));
-        let balls = if inside { inside::balls(&scaled, scout, plan.seed) } else { Vec::new() };
-        let caster = Caster { specimen: &scaled, scout, balls: &balls, seed: plan.seed };
-        let families: Vec<Family> = Family::ALL.into_iter().filter(|f| wanted(f) && caster.has(*f)).collect();
-        let share = plan.brute_budget / (families.len() * plan.scales.len()).max(1) as u64;
-        for family in families {
-            progress(scale, family);
-            let mut packets = (plan.packets)(family);
-            if family == Family::Far {
-                // Boxes are padded in proportion to the distance, so that from far enough away a tree tests every triangle.
-                packets = packets.min((plan.brute_budget / u64::from(scaled.count().max(1))).max(STREAM / 8));
-            }
-            let pairs = packets * QUESTIONS * u64::from(scaled.count());
-            let stride = pairs.div_ceil(share.max(1)).max(1);
-            let patience = (share / (QUESTIONS * u64::from(scaled.count())).max(1)).max(1);
-            let observer = Observer { specimen: &scaled, oracle: &*oracle, witnesses: &witnesses, stride, patience };
-            observer.observe(&caster, family, packets, log);
-        }
-    }
-    Ok(())
-}
 
 /// One specimen at one scale, and everybody who looks at it.
 pub(crate) struct Observer<'a> {
@@ -123,27 +16,19 @@ pub(crate) struct Observer<'a> {
     /// Brute.
     pub(crate) oracle: &'a dyn Accel,
     /// All others; the first is the reference where brute does not look.
-    pub(crate) witnesses: &'a [Witness],
+    pub(crate) witnesses: &'a [Witness<'a>],
     /// Brute looks at every n-th packet of eight.
     pub(crate) stride: u64,
     /// How many packets brute may look at for the sake of disputes that are listed but not judged.
     pub(crate) patience: u64,
 }
 
-impl Witness {
-    /// A backend, built over a specimen.
-    pub(crate) fn of(backend: Backend, intersect: Intersect, specimen: &Specimen) -> Result<Self> {
-        let accel = backend.build(&specimen.geometry, intersect)?;
-        Ok(Self { name: backend.to_string(), accel, standard: Standard::of(backend, intersect) })
-    }
-}
-
 /// The oracle's name.
 pub(crate) const ORACLE: &str = "brute";
 /// Nearest hit, occlusion, and occlusion through a filter.
-const QUESTIONS: u64 = 3;
+pub(super) const QUESTIONS: u64 = 3;
 /// Packets per call, so that backends that work on streams see some.
-const STREAM: u64 = 64;
+pub(super) const STREAM: u64 = 64;
 
 impl Observer<'_> {
     /// Casts `packets` packets of a family. Adds a row for brute and each witness, and what they disagree on.
@@ -316,15 +201,14 @@ fn one(ray: &Ray8, lane: usize) -> aim::Ray {
 fn gather(packets: &[Packet], lanes: &[(usize, usize)]) -> Ray8 {
     let at = |l: usize| lanes.get(l).copied().unwrap_or(lanes[0]);
     let alive = (0..lanes.len()).filter(|&l| packets[lanes[l].0].ray.mask.lane(lanes[l].1));
-    rays::pack(&std::array::from_fn(|l| one(&packets[at(l).0].ray, at(l).1)), alive.fold(0, |bits, l| bits | 1 << l))
-        .ray
+    pack(&std::array::from_fn(|l| one(&packets[at(l).0].ray, at(l).1)), alive.fold(0, |bits, l| bits | 1 << l)).ray
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::census::judge::judge;
-    use crate::census::meshes::specimens;
+    use crate::census::{FAULTS, inside, judge::judge, meshes::specimens};
+    use gonio_accel::Intersect;
 
     fn observed(
         specimen: &Specimen,
@@ -373,7 +257,7 @@ mod tests {
         assert_eq!((camera.backend.as_str(), camera.rays), (ORACLE, 128 / 16 * 8));
         // Two witnesses that differ: every ray in dispute is settled by brute.
         let oracle = gonio_accel::Brute::new(&specimen.geometry);
-        let fault = faults::FAULTS.iter().find(|f| f.name.contains("second")).unwrap();
+        let fault = FAULTS.iter().find(|f| f.name.contains("second")).unwrap();
         let witness = |name: &str, accel| Witness { name: name.to_owned(), accel, standard: Standard::Exact };
         let witnesses = [witness("right", obvhs(&specimen)), witness("wrong", (fault.plant)(obvhs(&specimen), 1.0))];
         let caster = Caster { specimen: &specimen, scout: &oracle, balls: &[], seed: 1 };

@@ -1,6 +1,6 @@
 //! Scenes of the repository's `scenes/`, compiled in, so that an installed program has them too.
 
-use anyhow::{Context, Result};
+use crate::error::Error;
 use gonio_tracer::scene::Scene;
 use std::path::Path;
 
@@ -22,11 +22,11 @@ pub(crate) const CORNELL_BOX: Files = &[shipped!("cornell-box.toml"), shipped!("
 ///
 /// # Errors
 /// If the folder cannot be written to.
-pub(crate) fn unpack(files: Files, folder: &Path) -> Result<Scene> {
-    std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
+pub(crate) fn unpack(files: Files, folder: &Path) -> Result<Scene, Error> {
+    std::fs::create_dir_all(folder).map_err(Error::file(folder, "made"))?;
     for (name, text) in files {
         let path = folder.join(name);
-        std::fs::write(&path, text).with_context(|| format!("{}: cannot be written", path.display()))?;
+        std::fs::write(&path, text).map_err(Error::file(&path, "written"))?;
     }
     Ok(Scene::load(&folder.join(files[0].0))?)
 }

@@ -26,7 +26,7 @@ pub(crate) struct Answers {
 /// How an answer is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Kind {
+pub enum Kind {
     /// The ray passes a surface that must stop it.
     Leak,
     /// Only one of the two has a hit.

@@ -11,95 +11,124 @@ use std::fmt;
 
 /// The counts of one family at one scale by one backend.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Row {
+pub struct Row {
     /// What was cast at.
-    pub(crate) specimen: String,
+    pub specimen: String,
     /// The factor on all lengths.
-    pub(crate) scale: f64,
-    pub(crate) family: Family,
-    pub(crate) backend: String,
+    pub scale: f64,
+    /// Which rays.
+    pub family: Family,
+    /// Who was asked.
+    pub backend: String,
     /// How it was compared with brute.
-    pub(crate) standard: Standard,
+    pub standard: Standard,
     /// More than one triangle in a hundred is a needle.
-    pub(crate) needles: bool,
-    pub(crate) rays: u64,
-    pub(crate) hits: u64,
+    pub needles: bool,
+    /// Rays that were cast.
+    pub rays: u64,
+    /// Those of them that hit something.
+    pub hits: u64,
     /// Rays whose answer brute knows; the others were compared with the first backend that is not brute, obvhs as a rule.
-    pub(crate) seen_by_brute: u64,
+    pub seen_by_brute: u64,
     /// Rays that a surface must stop.
-    pub(crate) must_hit: u64,
+    pub must_hit: u64,
     /// Rays that it did not stop.
-    pub(crate) leaks: u64,
-    /// Disagreements with brute by their kind, one per ray.
-    pub(crate) hit_or_miss: u64,
-    pub(crate) prim: u64,
-    pub(crate) t: u64,
-    pub(crate) bary: u64,
-    pub(crate) shadow: u64,
+    pub leaks: u64,
+    /// Disagreements with brute, one per ray: only one of the two has a hit.
+    pub hit_or_miss: u64,
+    /// Another triangle.
+    pub prim: u64,
+    /// Another distance.
+    pub t: u64,
+    /// Another place in the triangle.
+    pub bary: u64,
+    /// Another answer about occlusion.
+    pub shadow: u64,
 }
 
-/// A disagreement with brute or a leak, with all that is needed to see it again.
+/// A disagreement with brute or a leak, with all that is needed to see it again. It is printed in several lines.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Disagreement {
-    pub(crate) specimen: String,
-    pub(crate) scale: f64,
-    pub(crate) family: Family,
+pub struct Disagreement {
+    /// What was cast at.
+    pub specimen: String,
+    /// The factor on all lengths.
+    pub scale: f64,
+    /// Which rays.
+    pub family: Family,
     /// Of the ray within its family.
-    pub(crate) number: u64,
+    pub number: u64,
     /// Whose answer is wrong.
-    pub(crate) backend: String,
-    pub(crate) kinds: Vec<Kind>,
-    pub(crate) ray: RayRecord,
+    pub backend: String,
+    /// How it is wrong.
+    pub kinds: Vec<Kind>,
+    /// The ray.
+    pub ray: RayRecord,
     /// What everybody says of it.
-    pub(crate) told: Vec<Told>,
+    pub told: Vec<Told>,
 }
 
 /// A ray, to the last bit.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct RayRecord {
-    origin: [Number; 3],
-    dir: [Number; 3],
-    t_min: Number,
-    t_max: Number,
+pub struct RayRecord {
+    /// Where it starts.
+    pub origin: [Number; 3],
+    /// Where it goes.
+    pub dir: [Number; 3],
+    /// Where its interval begins.
+    pub t_min: Number,
+    /// Where its interval ends.
+    pub t_max: Number,
 }
 
 /// What one backend says of a ray.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Told {
-    pub(crate) backend: String,
-    hit: Option<HitRecord>,
-    blocked: bool,
+pub struct Told {
+    /// Who says it.
+    pub backend: String,
+    /// The nearest hit.
+    pub hit: Option<HitRecord>,
+    /// Whether anything is in the way.
+    pub blocked: bool,
     /// With a filter that lets about half of all hits through.
-    blocked_through_filter: bool,
+    pub blocked_through_filter: bool,
 }
 
 /// A hit, to the last bit.
 #[derive(Clone, Debug, Serialize)]
-struct HitRecord {
-    t: Number,
-    prim: u32,
-    mesh: u32,
-    instance: u32,
-    bary: [Number; 2],
+pub struct HitRecord {
+    /// The distance.
+    pub t: Number,
+    /// The triangle's place in its mesh.
+    pub prim: u32,
+    /// The mesh.
+    pub mesh: u32,
+    /// The instance.
+    pub instance: u32,
+    /// The place in the triangle.
+    pub bary: [Number; 2],
 }
 
 /// A number as the shortest decimal that reads back as the same, and as its bits.
 #[derive(Clone, Debug, Serialize)]
-struct Number {
-    decimal: String,
-    bits: String,
+pub struct Number {
+    /// The decimal.
+    pub decimal: String,
+    /// The bits, in hexadecimal digits.
+    pub bits: String,
 }
 
 /// Disagreements that are kept; beyond that they are counted.
 const KEPT: usize = 20_000;
 
 /// A census as it grows.
-#[derive(Debug, Default, Serialize)]
-pub(crate) struct Log {
-    pub(crate) rows: Vec<Row>,
-    pub(crate) disagreements: Vec<Disagreement>,
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Log {
+    /// The counts: brute's, then each backend's, family by family.
+    pub rows: Vec<Row>,
+    /// Disagreements and leaks, the first of them.
+    pub disagreements: Vec<Disagreement>,
     /// Disagreements that were counted but not kept.
-    pub(crate) left_out: u64,
+    pub left_out: u64,
 }
 
 impl Log {
@@ -166,7 +195,7 @@ impl Row {
     }
 
     /// Rays on which the backend disagrees with brute.
-    pub(crate) fn exceptions(&self) -> u64 {
+    pub fn exceptions(&self) -> u64 {
         self.hit_or_miss + self.prim + self.t + self.bary + self.shadow
     }
 }

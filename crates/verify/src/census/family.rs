@@ -1,4 +1,4 @@
-//! The families of rays: each a way in which a ray and a triangle can be on bad terms.
+//! The families of rays: each asks for something that ray casters get wrong.
 
 use gonio_accel::RayKind;
 use serde::{Serialize, Serializer};
@@ -6,7 +6,7 @@ use std::fmt;
 
 /// A way of choosing rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Family {
+pub enum Family {
     /// From the camera, in blocks of four by two pixels.
     Camera,
     /// From camera hits, distributed by cosine.
@@ -40,7 +40,8 @@ pub(crate) enum Family {
 }
 
 impl Family {
-    pub(crate) const ALL: [Self; 15] = [
+    /// All of them.
+    pub const ALL: [Self; 15] = [
         Self::Camera,
         Self::Bounce,
         Self::Shadow,
@@ -59,27 +60,27 @@ impl Family {
     ];
 
     /// Rays as a renderer casts them, which no rounding decides: another ray caster must agree on all but 1 in 10⁵.
-    pub(crate) fn is_ordinary(self) -> bool {
+    pub fn is_ordinary(self) -> bool {
         matches!(self, Self::Camera | Self::Bounce | Self::Shadow | Self::Random | Self::Secondary)
     }
 
     /// Rays that start on a triangle, or next to it.
-    pub(crate) fn leaves_a_surface(self) -> bool {
+    pub fn leaves_a_surface(self) -> bool {
         matches!(self, Self::Bounce | Self::Shadow | Self::Secondary)
     }
 
     /// Rays that start inside of a closed surface: each must hit something.
-    pub(crate) fn is_inside(self) -> bool {
+    pub fn is_inside(self) -> bool {
         matches!(self, Self::EdgeFromInside | Self::VertexFromInside | Self::AxisFromInside)
     }
 
     /// Rays aimed at places between triangles, so that many of them can leak.
-    pub(crate) fn is_aimed_between_triangles(self) -> bool {
+    pub fn is_aimed_between_triangles(self) -> bool {
         self.is_inside() || matches!(self, Self::Edge | Self::Vertex | Self::AxisParallel | Self::Far)
     }
 
     /// What a renderer would say of them.
-    pub(crate) fn kind(self) -> RayKind {
+    pub fn kind(self) -> RayKind {
         if self == Self::Camera { RayKind::Coherent } else { RayKind::Incoherent }
     }
 }

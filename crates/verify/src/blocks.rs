@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn noise_passes_and_a_wrong_corner_does_not() {
-        let noise = |i: usize, k: usize| (crate::random::unit(1, i as u64, k as u64) - 0.5) as f32;
+        let noise = |i: usize, k: usize| (gonio_lab::random::unit(1, i as u64, k as u64) - 0.5) as f32;
         let mut picture = Picture {
             width: 20,
             height: 20,

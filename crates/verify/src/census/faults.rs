@@ -6,8 +6,9 @@ use gonio_kernel::{F32x8, Mask8, U32x8};
 
 /// A way of being wrong.
 #[derive(Clone, Copy)]
-pub(crate) struct Fault {
-    pub(crate) name: &'static str,
+pub struct Fault {
+    /// What it does.
+    pub name: &'static str,
     /// Makes a right backend wrong, at the given scale.
     pub(crate) plant: fn(Box<dyn Accel>, f64) -> Box<dyn Accel>,
     /// The laxest standard by which it must be noticed.
@@ -17,8 +18,8 @@ pub(crate) struct Fault {
 /// Scales at which the faults are looked for; one of them is wrong at the last only.
 pub(crate) const SCALES: [f64; 2] = [1.0, 1e4];
 
-/// All of them.
-pub(crate) static FAULTS: [Fault; 10] =
+/// Everything that can be planted.
+pub static FAULTS: [Fault; 10] =
     [
         fault("drops hits on shared edges", |inner, _| wrong(inner, drop_at_edges, Lie::AsItsHits)),
         fault("returns the second nearest hit", |inner, _| wrong(inner, second_nearest, Lie::None)),

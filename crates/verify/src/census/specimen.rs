@@ -2,7 +2,7 @@
 
 use super::aim::wide;
 use super::topology::Topology;
-use anyhow::Result;
+use crate::error::Error;
 use gonio_accel::{Geometry, Instance, Ray8, WorldTriangle};
 use gonio_kernel::{F32x8, Vec3};
 use gonio_tracer::scene::{Camera, FilmSettings};
@@ -11,8 +11,9 @@ use std::sync::Arc;
 
 /// A geometry and what is known of it, at one scale.
 #[derive(Clone)]
-pub(crate) struct Specimen {
-    pub(crate) name: String,
+pub struct Specimen {
+    /// Its name in reports.
+    pub name: String,
     pub(crate) geometry: Geometry,
     /// The factor on all lengths.
     pub(crate) scale: f64,
@@ -40,13 +41,13 @@ pub(crate) struct Place {
 
 impl Specimen {
     /// A scene, seen by its own camera.
-    pub(crate) fn of_world(name: &str, world: &World) -> Self {
+    pub fn of_world(name: &str, world: &World) -> Self {
         let emitters = world.emitters().collect();
         Self::new(name, world.geometry().clone(), world.view(), emitters)
     }
 
     /// A geometry, seen from beyond a corner of its bounds, with no lights.
-    pub(crate) fn of_geometry(name: &str, geometry: Geometry) -> Self {
+    pub fn of_geometry(name: &str, geometry: Geometry) -> Self {
         let [lo, hi] = bounds(&geometry).map(wide);
         let [origin, target] = [hi + (hi - lo) * 0.7, (lo + hi) * 0.5].map(|v| [v.x, v.y, v.z].into());
         let film = FilmSettings { width: 256, height: 256, spp: 1, exposure: 0.0 };
@@ -71,17 +72,18 @@ impl Specimen {
     ///
     /// # Errors
     /// If it would reach beyond what rays can.
-    pub(crate) fn scaled(&self, scale: f64) -> Result<Self> {
+    pub(crate) fn scaled(&self, scale: f64) -> Result<Self, Error> {
         let instances = self.geometry.instances().iter();
         let instances = instances.map(|i| Instance { transform: i.transform.map(|row| row.map(|x| x * scale)), ..*i });
-        let geometry = Geometry::new(self.geometry.meshes().to_vec(), instances.collect())?;
+        let geometry = Geometry::new(self.geometry.meshes().to_vec(), instances.collect())
+            .map_err(|source| Error::Scale { name: self.name.clone(), scale, source })?;
         let [lo, hi] = bounds(&geometry);
         let emitters = self.emitters.iter().map(|corners| corners.map(|v| v * scale as f32)).collect();
         Ok(Self { geometry, scale: self.scale * scale, lo, hi, emitters, ..self.clone() })
     }
 
     /// How many triangles there are.
-    pub(crate) fn count(&self) -> u32 {
+    pub fn count(&self) -> u32 {
         self.starts.last().copied().unwrap_or(0)
     }
 
@@ -111,6 +113,11 @@ impl Specimen {
     /// Whether the triangle belongs to a closed surface.
     pub(crate) fn is_closed(&self, place: Place) -> bool {
         self.topology(place.instance).is_closed(place.prim)
+    }
+
+    /// How many triangles belong to closed surfaces.
+    pub fn closed_count(&self) -> usize {
+        (0..self.count()).filter(|&i| self.is_closed(self.place(i))).count()
     }
 
     /// Columns and rows of the camera's picture.

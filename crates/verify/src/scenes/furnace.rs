@@ -2,8 +2,8 @@
 //!
 //! The files are written to the report's folder, where a scene that fails can be rendered again by hand.
 
+use crate::error::Error;
 use crate::shipped::{Files, shipped, unpack};
-use anyhow::Result;
 use gonio_accel::Intersect;
 use gonio_kernel::{Lobe, Rgb};
 use gonio_tracer::scene::{Scene, Sky};
@@ -121,14 +121,14 @@ impl Furnace {
     }
 
     /// Writes the files to a folder and reads the scene.
-    pub(super) fn unpack(&self, folder: &Path) -> Result<Scene> {
+    pub(super) fn unpack(&self, folder: &Path) -> Result<Scene, Error> {
         unpack(self.files, folder)
     }
 
     /// Renders the scene.
-    pub(super) fn render(&self, scene: &Scene, shot: &Shot, spp: u32, seed: u64) -> Result<Rendering> {
+    pub(super) fn render(&self, scene: &Scene, shot: &Shot, spp: u32, seed: u64) -> Result<Rendering, Error> {
         let world = World::new(scene)?;
-        let accel = shot.backend.build(world.geometry(), Intersect::Robust)?;
+        let accel = shot.backend.build(world.geometry(), Intersect::Robust).map_err(|e| Error::Backend(e.into()))?;
         let mut settings = RenderSettings { spp, seed, threads: shot.threads, ..RenderSettings::of(scene, &world) };
         settings.russian_roulette = shot.roulette;
         settings.plan = shot.plan.unwrap_or(settings.plan);

@@ -1,6 +1,6 @@
-//! What is measured of a difference.
+//! How two pictures of one scene differ, and whether chance explains it.
 
-use crate::statistics::{level, test_blocks, tests};
+use crate::blocks::{level, test_blocks, tests};
 use gonio_report::around_mid_grey;
 use gonio_tracer::image::Picture;
 
@@ -14,46 +14,58 @@ const NOTICEABLE: f64 = 1e-3;
 const ROUNDING: f64 = 1e-6;
 
 /// How B differs from A, by channel.
-pub(super) struct Difference {
+#[derive(Clone, Debug)]
+pub struct Difference {
     /// B − A.
-    pub(super) picture: Picture,
+    pub picture: Picture,
     /// Of A, and of B.
-    pub(super) means: [[f64; 3]; 2],
-    pub(super) rmse: [f64; 3],
+    pub means: [[f64; 3]; 2],
+    /// Root mean square of B − A.
+    pub rmse: [f64; 3],
     /// Mean of (B − A)²/(A² + ε).
-    pub(super) rel_mse: [f64; 3],
+    pub rel_mse: [f64; 3],
     /// Pixels with any difference, to the last bit.
-    pub(super) unequal: usize,
-    /// Pixels with a noticeable difference, and those of them none of whose eight neighbours has one.
-    pub(super) differing: usize,
-    pub(super) isolated: usize,
+    pub unequal: usize,
+    /// Pixels with a noticeable difference.
+    pub differing: usize,
+    /// Those of them none of whose eight neighbours has one.
+    pub isolated: usize,
     /// Pixels of either picture with a channel that is not finite.
-    pub(super) not_numbers: usize,
-    pub(super) largest: Largest,
-    /// The block test: how many tests, how many failed at which level, and the worst.
-    pub(super) tests: usize,
-    pub(super) failed: usize,
-    pub(super) level: f64,
-    pub(super) worst_p: f64,
-    pub(super) worst_place: String,
+    pub not_numbers: usize,
+    /// The largest difference of any channel.
+    pub largest: Largest,
+    /// How many tests the block test made.
+    pub tests: usize,
+    /// How many of them failed.
+    pub failed: usize,
+    /// At which level each.
+    pub level: f64,
+    /// The least p-value.
+    pub worst_p: f64,
+    /// Where it was found, and what was measured there.
+    pub worst_place: String,
 }
 
 /// The largest difference of any channel, and its pixel.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Largest {
-    pub(super) value: f64,
-    pub(super) x: usize,
-    pub(super) y: usize,
+pub struct Largest {
+    /// Its size.
+    pub value: f64,
+    /// The pixel's column.
+    pub x: usize,
+    /// The pixel's row, from the top.
+    pub y: usize,
 }
 
 impl Difference {
-    pub(super) fn explained_by_chance(&self) -> bool {
+    /// Whether no test found a difference.
+    pub fn explained_by_chance(&self) -> bool {
         self.failed == 0
     }
 }
 
 /// Measures how B differs from A, which has the same size.
-pub(super) fn difference(a: &Picture, b: &Picture, significance: f64) -> Difference {
+pub fn difference(a: &Picture, b: &Picture, significance: f64) -> Difference {
     let n = a.rgb.len() as f64;
     let pairs = || a.rgb.iter().zip(&b.rgb);
     let mean_of = |value: &dyn Fn(f64, f64) -> f64| {
@@ -116,7 +128,7 @@ fn isolated(marked: &[bool], width: usize) -> usize {
 
 /// The difference relative to the mean of A, magnified so that all but the largest percent fits between black and twice mid
 /// grey, and by how much.
-pub(super) fn magnified(a: &Picture, difference: &Picture) -> (Picture, f64) {
+pub fn magnified(a: &Picture, difference: &Picture) -> (Picture, f64) {
     let mean = a.rgb.iter().flatten().map(|&x| f64::from(x)).filter(|x| x.is_finite()).sum::<f64>();
     let mean = (mean / (3 * a.rgb.len()) as f64).abs().max(f64::MIN_POSITIVE);
     let mut sizes: Vec<f32> = difference.rgb.iter().flatten().map(|x| x.abs()).filter(|x| x.is_finite()).collect();
@@ -131,7 +143,7 @@ pub(super) fn magnified(a: &Picture, difference: &Picture) -> (Picture, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::unit;
+    use gonio_lab::random::unit;
 
     fn noisy(seed: u64) -> Picture {
         let pixel = |i: u64| [0, 1, 2].map(|c| (1.0 + 0.2 * (unit(seed, i, c) - 0.5)) as f32);

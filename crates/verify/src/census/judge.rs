@@ -16,21 +16,27 @@ const RATE: u64 = 100_000;
 
 /// A count and the most that it may be.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Finding {
-    pub(crate) specimen: String,
-    pub(crate) scale: f64,
-    pub(crate) backend: String,
-    pub(crate) what: What,
+pub struct Finding {
+    /// What was cast at.
+    pub specimen: String,
+    /// The factor on all lengths.
+    pub scale: f64,
+    /// Whose rays were counted.
+    pub backend: String,
+    /// What was counted.
+    pub what: What,
     /// Rays that were looked at.
-    pub(crate) rays: u64,
-    pub(crate) count: u64,
-    pub(crate) limit: u64,
+    pub rays: u64,
+    /// How many of them.
+    pub count: u64,
+    /// The most that may be.
+    pub limit: u64,
 }
 
 /// What was counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum What {
+pub enum What {
     /// Rays that disagree with brute.
     Disagreements,
     /// Rays that pass a surface which must stop them.
@@ -38,7 +44,8 @@ pub(crate) enum What {
 }
 
 impl Finding {
-    pub(crate) fn passed(&self) -> bool {
+    /// Whether the count keeps its limit.
+    pub fn passed(&self) -> bool {
         self.count <= self.limit
     }
 }

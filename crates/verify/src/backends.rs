@@ -4,25 +4,22 @@
 //! specimen that no ray passes a surface which must stop it. Then the planted faults, each of which the same judgement must
 //! fail.
 
-use super::wanted;
-use crate::census::family::Family;
-use crate::census::faults::{FAULTS, Fault, SCALES};
-use crate::census::judge::{allowed, forbids_leaks, is_judged, judge};
-use crate::census::meshes::specimens;
-use crate::census::record::{Log, Row};
-use crate::census::specimen::Specimen;
-use crate::census::{Plan, Standard, Witness};
-use crate::random::seed_for;
+use crate::census::{
+    self, Contender, FAULT_SCALES, FAULTS, Family, Fault, Log, Plan, Row, Specimen, Standard, allowed, forbids_leaks,
+    is_judged, judge, specimens,
+};
+use crate::error::Error;
 use crate::shipped::{CORNELL_BOX, unpack};
-use anyhow::Result;
-use gonio_accel::Intersect;
+use crate::validation::{outcome, wanted};
+use gonio_accel::{Geometry, Intersect};
+use gonio_lab::random::seed_for;
 use gonio_lab::{Check, Effort, Options, Outcome};
 use gonio_tracer::{Backend, World};
 use std::path::Path;
 use std::time::Instant;
 
 /// Name and meaning of the instruments in this file.
-pub(super) const INSTRUMENTS: [(&str, &str); 2] = [
+pub(crate) const INSTRUMENTS: [(&str, &str); 2] = [
     (
         "census",
         "every ray-casting backend finds the hit that brute force finds, and the same blocked rays, at every scale",
@@ -36,7 +33,7 @@ const ALL_SCALES: [f64; 3] = [1e-4, 1.0, 1e4];
 const FAULT_RAYS: u64 = 1 << 11;
 
 /// Runs the census of all backends and hands each check to `sink`.
-pub(super) fn run(options: &Options, out: &Path, sink: &mut dyn FnMut(Check)) -> Result<Log> {
+pub(crate) fn run(options: &Options, out: &Path, sink: &mut dyn FnMut(Check)) -> Result<Log, Error> {
     let mut log = Log::default();
     let mut all = specimens();
     all.push(Specimen::of_world("cornell-box", &World::new(&unpack(CORNELL_BOX, &out.join("scenes"))?)?));
@@ -63,7 +60,7 @@ fn leak_subject(backend: &str, specimen: &Specimen) -> String {
     format!("{backend} on {}", specimen.name)
 }
 
-fn measure(specimen: &Specimen, options: &Options, log: &mut Log, sink: &mut dyn FnMut(Check)) -> Result<()> {
+fn measure(specimen: &Specimen, options: &Options, log: &mut Log, sink: &mut dyn FnMut(Check)) -> Result<(), Error> {
     let rays: u64 = match options.effort {
         Effort::Quick => 1 << 11,
         Effort::Standard => 1 << 13,
@@ -77,8 +74,8 @@ fn measure(specimen: &Specimen, options: &Options, log: &mut Log, sink: &mut dyn
     };
     let start = Instant::now();
     let before = log.rows.len();
-    let witnesses =
-        |scaled: &Specimen| backends().map(|b| Witness::of(b, Intersect::Robust, scaled)).collect::<Result<Vec<_>>>();
+    let contenders: Vec<Contender> = backends().map(|b| Contender::of_backend(b, Intersect::Robust)).collect();
+    let witnesses = |scaled: &Specimen| contenders.iter().map(|contender| contender.witness(scaled)).collect();
     let plan = Plan {
         witnesses: &witnesses,
         scales: &ALL_SCALES,
@@ -86,7 +83,7 @@ fn measure(specimen: &Specimen, options: &Options, log: &mut Log, sink: &mut dyn
         seed: seed_for(options.seed, &specimen.name),
         brute_budget: u64::MAX,
     };
-    crate::census::run(specimen, &plan, log, &mut |_, _| ())?;
+    census::run(specimen, &plan, log, &mut |_, _| ())?;
     let rows = &log.rows[before..];
     let seconds = start.elapsed().as_secs_f64() / rows.len().max(1) as f64;
     let first = |backend: &str, kind: &dyn Fn(&Row) -> bool| {
@@ -122,7 +119,7 @@ fn sum<'a>(rows: impl Iterator<Item = &'a Row>) -> Option<Row> {
     rows.cloned().reduce(|a, b| a.plus(&b))
 }
 
-fn planted_faults(specimen: &Specimen, options: &Options, sink: &mut dyn FnMut(Check)) -> Result<()> {
+fn planted_faults(specimen: &Specimen, options: &Options, sink: &mut dyn FnMut(Check)) -> Result<(), Error> {
     for fault in &FAULTS {
         for standard in [Standard::Exact, Standard::Close] {
             // A sphere seen from outside shows a lax judge too little.
@@ -134,7 +131,7 @@ fn planted_faults(specimen: &Specimen, options: &Options, sink: &mut dyn FnMut(C
                 let (failed, detail) = planted(specimen, fault, standard, options)?;
                 let seconds = start.elapsed().as_secs_f64();
                 let mut check = check("planted-faults", subject, failed, 1, "limits broken ≥", detail, seconds);
-                check.outcome = if failed >= 1 { Outcome::Passed } else { Outcome::Failed };
+                check.outcome = outcome(failed >= 1);
                 sink(check);
             }
         }
@@ -143,21 +140,24 @@ fn planted_faults(specimen: &Specimen, options: &Options, sink: &mut dyn FnMut(C
 }
 
 /// How many findings fail because of a fault, and the first disagreement.
-fn planted(specimen: &Specimen, fault: &Fault, standard: Standard, options: &Options) -> Result<(u64, String)> {
-    let witnesses = |scaled: &Specimen| {
-        let right = Backend::Obvhs.build(&scaled.geometry, Intersect::Robust)?;
-        let accel = (fault.plant)(right, scaled.scale);
-        Ok(vec![Witness { name: "planted fault".to_owned(), accel, standard }])
-    };
+fn planted(
+    specimen: &Specimen,
+    fault: &'static Fault,
+    standard: Standard,
+    options: &Options,
+) -> Result<(u64, String), Error> {
+    let right = |geometry: &Geometry| Ok(Backend::Obvhs.build(geometry, Intersect::Robust)?);
+    let contender = Contender::new("planted fault", standard, right).with_fault(fault);
+    let witnesses = |scaled: &Specimen| Ok(vec![contender.witness(scaled)?]);
     let plan = Plan {
         witnesses: &witnesses,
-        scales: &SCALES,
+        scales: &FAULT_SCALES,
         packets: &|_| FAULT_RAYS / 8,
         seed: seed_for(options.seed, &specimen.name),
         brute_budget: u64::MAX,
     };
     let mut log = Log::default();
-    crate::census::run(specimen, &plan, &mut log, &mut |_, _| ())?;
+    census::run(specimen, &plan, &mut log, &mut |_, _| ())?;
     let failed = judge(&log.rows).iter().filter(|finding| !finding.passed()).count() as u64;
     Ok((failed, log.disagreements.first().map_or_else(String::new, |d| d.to_string().replace("\n  ", "; "))))
 }
@@ -174,7 +174,7 @@ fn check(
     Check {
         instrument: instrument.to_owned(),
         subject,
-        outcome: if count <= limit { Outcome::Passed } else { Outcome::Failed },
+        outcome: outcome(count <= limit),
         measured: count as f64,
         limit: limit as f64,
         meaning: meaning.to_owned(),

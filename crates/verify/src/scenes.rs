@@ -4,7 +4,7 @@
 //! reflection, radiance is the same everywhere: L·(1 + a + a² + …). With max_depth d the sum ends with aᵈ, so the answer is
 //! L·(1 − a^(d+1))/(1 − a) exactly. A white convex object under a uniform sky vanishes, and a grey one shows the sky times
 //! its albedo, because no light comes back to it. Every block of pixels is tested against that number (see
-//! [`crate::statistics`]).
+//! [`crate::blocks`]).
 //!
 //! **scene-hash.** Number of threads and the pruning of the plan never change a bit of the film, nor does the backend if it
 //! finds the same bits as brute force ([`Backend::is_exact`]).
@@ -15,11 +15,11 @@
 
 mod furnace;
 
-use super::{SIGNIFICANCE, wanted};
-use crate::statistics::{Worst, level, tests, worst_block};
-use anyhow::{Context, Result};
+use crate::blocks::{Worst, level, tests, worst_block};
+use crate::error::Error;
+use crate::validation::{outcome, wanted};
 use furnace::{FURNACES, Furnace, Shot};
-use gonio_lab::{Check, Effort, Options, Outcome};
+use gonio_lab::{Check, Effort, Options};
 use gonio_report::{Exhibit, Speed};
 use gonio_tracer::image::{Picture, write_png};
 use gonio_tracer::{Backend, Plan};
@@ -27,7 +27,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Name and meaning of the instruments in this file.
-pub(super) const INSTRUMENTS: [(&str, &str); 4] = [
+pub(crate) const INSTRUMENTS: [(&str, &str); 4] = [
     ("scene-furnace", "rendered furnaces have their analytic radiance in every block of pixels, with every backend"),
     ("scene-hash", "exact backends, number of threads and pruning of the plan do not change a bit of a picture"),
     ("scene-mean", "backends that are exact up to rounding render the same mean picture, within 0.01 %"),
@@ -39,10 +39,10 @@ pub(super) const INSTRUMENTS: [(&str, &str); 4] = [
 const SAME_MEAN: f64 = 1e-4;
 
 /// Renders all furnaces and hands their checks to `sink`.
-pub(super) fn run(options: &Options, out: &Path, sink: &mut dyn FnMut(Check)) -> Result<Vec<Exhibit>> {
+pub(crate) fn run(options: &Options, out: &Path, sink: &mut dyn FnMut(Check)) -> Result<Vec<Exhibit>, Error> {
     let folder = out.join("scenes");
     let tests: usize = FURNACES.iter().map(|f| f.shots().len() * tests(f.size, f.size)).sum();
-    let level = level(SIGNIFICANCE, tests);
+    let level = level(options.significance, tests);
     let mut exhibits = Vec::new();
     for furnace in &FURNACES {
         let instruments = INSTRUMENTS.iter().map(|(name, _)| *name).chain(["planted-faults"]);
@@ -60,7 +60,7 @@ fn measure(
     folder: &Path,
     out: &Path,
     sink: &mut dyn FnMut(Check),
-) -> Result<Exhibit> {
+) -> Result<Exhibit, Error> {
     let scene = furnace.unpack(folder)?;
     let mut send = |check: Check| {
         if wanted(options, &check.instrument, &check.subject) {
@@ -161,7 +161,7 @@ fn hashes(
     options: &Options,
     pictures: &[(Shot, Picture, String)],
     send: &mut dyn FnMut(Check),
-) -> Result<()> {
+) -> Result<(), Error> {
     const SPP: u32 = 4; // a bit is as easily wrong in few samples as in many
     let start = Instant::now();
     let base = Shot { backend: Backend::Obvhs, threads: 1, plan: None, roulette: scene.integrator.russian_roulette };
@@ -249,7 +249,7 @@ fn exhibit(
     picture: &Picture,
     speeds: Vec<Speed>,
     out: &Path,
-) -> Result<Exhibit> {
+) -> Result<Exhibit, Error> {
     let expected = furnace.answer(scene);
     let mut deviation = picture.clone();
     for rgb in &mut deviation.rgb {
@@ -257,10 +257,10 @@ fn exhibit(
             *x = Exhibit::shade((*x).into(), expected);
         }
     }
-    let save = |name: String, picture: &Picture, exposure: f32| -> Result<Vec<u8>> {
+    let save = |name: String, picture: &Picture, exposure: f32| -> Result<Vec<u8>, Error> {
         let path = out.join(name);
         write_png(&path, picture, exposure)?;
-        std::fs::read(&path).with_context(|| format!("{}: cannot be read", path.display()))
+        std::fs::read(&path).map_err(Error::file(&path, "read"))
     };
     let [r, g, b] = expected;
     Ok(Exhibit {
@@ -275,8 +275,4 @@ fn exhibit(
 /// Whether `--only` may ask for something of this scene: subjects begin with its name or contain it.
 fn may_want(options: &Options, instrument: &str, scene: &str) -> bool {
     options.only.as_ref().is_none_or(|only| only == instrument || only.contains(scene) || scene.contains(only.as_str()))
-}
-
-fn outcome(passed: bool) -> Outcome {
-    if passed { Outcome::Passed } else { Outcome::Failed }
 }

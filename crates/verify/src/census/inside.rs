@@ -8,7 +8,7 @@
 //! point of an edge, so that rays along that axis meet them exactly.
 
 use super::aim::wide;
-use super::rays::Dice;
+use super::dice::Dice;
 use super::specimen::{Place, Specimen};
 use gonio_accel::{Accel, Hit8, Ray8, RayKind};
 use gonio_kernel::{F32x8, Vec3};

@@ -1,8 +1,8 @@
 //! The specimens: small meshes, generated here, each with something that ray casters get wrong.
 
 use super::specimen::Specimen;
-use crate::random::{seed_for, unit};
 use gonio_accel::{Geometry, Instance, Mesh};
+use gonio_lab::random::{seed_for, unit};
 
 /// All of them.
 pub(crate) fn specimens() -> Vec<Specimen> {

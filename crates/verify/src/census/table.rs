@@ -1,13 +1,13 @@
 //! The census as a table of the page: families of rays against backends, all specimens and scales together.
 
-use crate::census::ORACLE;
-use crate::census::family::Family;
-use crate::census::judge::is_judged;
-use crate::census::record::{Log, Row};
+use super::family::Family;
+use super::judge::is_judged;
+use super::observe::ORACLE;
+use super::record::{Log, Row};
 use gonio_report::{Cell, Html, Table, Tone};
 
 /// The table, or nothing if there was no census.
-pub(super) fn table(log: &Log) -> Option<Table> {
+pub fn table(log: &Log) -> Option<Table> {
     let mut backends: Vec<&str> = Vec::new();
     for row in &log.rows {
         if row.backend != ORACLE && !backends.contains(&row.backend.as_str()) {

@@ -1,17 +1,15 @@
 //! The ray sets of the benchmark.
 
-use crate::census::family::Family;
-use crate::census::rays::{Caster, bounces, shadows};
-use crate::census::specimen::Specimen;
-use crate::random::{seed_for, unit};
+use crate::census::{Caster, Family, Specimen, bounces, shadows};
 use gonio_accel::{Accel, Hit8, Ray8, RayKind};
 use gonio_kernel::{F32x8, Mask, Mask8};
+use gonio_lab::random::{seed_for, unit};
 use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// Rays of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum RaySet {
+pub enum RaySet {
     /// Camera rays, tile by tile.
     Primary,
     /// From the primary hits, distributed by cosine.
@@ -103,7 +101,7 @@ fn primary(specimen: &Specimen, count: u64, seed: u64) -> Vec<Ray8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::census::meshes::specimens;
+    use crate::census::specimens;
     use gonio_kernel::Vec3;
 
     #[test]
