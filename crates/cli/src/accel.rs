@@ -3,11 +3,11 @@
 mod bench;
 mod census;
 
-use crate::census::specimen::Specimen;
 use crate::usage::{Usage, warn};
 use anyhow::{Context, Result};
 use clap::Subcommand;
 use gonio_tracer::{Backend, World};
+use gonio_verify::census::Specimen;
 use std::path::Path;
 use std::process::ExitCode;
 

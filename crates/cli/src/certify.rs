@@ -2,14 +2,14 @@
 //! what a call costs.
 
 mod count;
-mod page;
 
+use crate::environment;
 use crate::output::{Target, probe, write_text};
-use crate::random::seed;
-use crate::usage::spinner;
+use crate::usage::{seed, spinner};
 use anyhow::{Context, Result, anyhow};
-use count::{Count, count};
-use gonio_lab::{Call, Certificate, Effort, Options, certify};
+use count::count;
+use gonio_lab::{Call, Certificate, Count, Effort, Options, certify};
+use gonio_report::json;
 use gonio_tracer::{MaterialSurface, constant_surface};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -83,7 +83,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let instructions = if args.instructions { count(&args.material) } else { Err("not asked for".to_owned()) };
     if let Some(path) = &args.report {
         let plots = gonio_lab::plots::of(&name, &surface, &options);
-        write_text(&Target::File(path.clone()), &page::page(&certificate, &options, &instructions, &plots))?;
+        let page = certificate.page(&options, &instructions, &plots, &environment::here());
+        write_text(&Target::File(path.clone()), &page)?;
     }
     if let Some(spinner) = spinner {
         spinner.finish_and_clear();
@@ -99,8 +100,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             certificate: &certificate,
             instructions: &instructions,
         };
-        let text = serde_json::to_string_pretty(&document).context("the certificate cannot be written as JSON")?;
-        write_text(target, &(text + "\n"))?;
+        write_text(target, &json::text(&document).context("the certificate cannot be written as JSON")?)?;
     }
     if args.json != Some(Target::Stdout) {
         write_text(&Target::Stdout, &format!("{certificate}{}", count::text(&instructions)))?;

@@ -2,16 +2,16 @@
 
 #[cfg(feature = "flip")]
 mod flip;
-mod measure;
 
 use crate::output::{Target, extension, write_text};
 use crate::usage::Usage;
-use anyhow::Result;
+use anyhow::{Context, Result};
 use gonio_io::exr::{self, Metadata};
 use gonio_io::{png, read_picture};
+use gonio_report::json;
 use gonio_tracer::Picture;
-use measure::{Difference, difference, magnified};
-use serde_json::json;
+use gonio_verify::difference::{Difference, difference, magnified};
+use serde_json::json as object;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -65,7 +65,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         write_difference(path, &a, &found)?;
     }
     let flip = flip(&a, &b);
-    let text = if args.json { format!("{:#}\n", as_json(args, &found, flip)) } else { as_text(&a, &found, flip) };
+    let text = if args.json {
+        json::text(&as_json(args, &found, flip)).context("the comparison cannot be written as JSON")?
+    } else {
+        as_text(&a, &found, flip)
+    };
     write_text(&Target::Stdout, &text)?;
     Ok(ExitCode::from(if args.test && !found.explained_by_chance() { 3 } else { 0 }))
 }
@@ -142,7 +146,7 @@ fn as_text(a: &Picture, found: &Difference, flip: Option<f64>) -> String {
 }
 
 fn as_json(args: &Args, found: &Difference, flip: Option<f64>) -> serde_json::Value {
-    json!({
+    object!({
         "a": args.a.display().to_string(),
         "b": args.b.display().to_string(),
         "mean_a": found.means[0],

@@ -1,7 +1,8 @@
 //! The command line of Gonio: `gonio render`, `compare`, `bsdf`, `certify`, `accel` and `validate`.
 //!
-//! One file per subcommand, and no physics: scenes and pictures belong to `gonio-tracer`, their files to `gonio-io`, scattering to `gonio-kernel`,
-//! its instruments to `gonio-lab`. What is here reads arguments, hands them on, and writes what comes back.
+//! One file per subcommand, arguments in, text out: scenes and pictures belong to `gonio-tracer`, their files to `gonio-io`,
+//! scattering to `gonio-kernel`, its instruments to `gonio-lab`, what needs both to `gonio-verify`, pages and JSON to
+//! `gonio-report`. What is here reads arguments, hands them on, and writes what comes back.
 //!
 //! Results go to files or standard output, everything else (warnings, progress, errors) to standard error. A file appears
 //! whole or not at all. Exit codes: 0 success; 1 an error; 2 wrong usage; 3 a check failed (validate, certify, accel census); 75 a render
@@ -10,17 +11,13 @@
 
 mod accel;
 mod bsdf;
-mod census;
 mod certify;
 mod compare;
 mod cpu;
 mod environment;
 mod output;
-mod random;
 mod render;
-mod shipped;
 mod signals;
-mod statistics;
 mod tables;
 mod usage;
 mod validate;

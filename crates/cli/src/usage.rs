@@ -1,10 +1,11 @@
 //! Arguments: how they are read, and what is said when they cannot be.
 
+use gonio_lab::random::bits;
 use indicatif::ProgressBar;
 use std::fmt;
 use std::io::{IsTerminal, stderr};
 use std::str::FromStr;
-use std::time::Duration;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// Wrong usage that only shows when the input is known (a crop outside of the picture): exit code 2, not 1.
 #[derive(Debug)]
@@ -55,6 +56,16 @@ pub(crate) fn count(text: &str) -> Result<u64, String> {
         .filter(|&n| n > 0)
         .or(scientific.map(|x| x as u64))
         .ok_or_else(|| "a number of samples is an integer, at least 1".to_owned())
+}
+
+/// Reads a seed: a number, or "random" for one that nobody chose, from the clock and the process.
+pub(crate) fn seed(text: &str) -> Result<u64, String> {
+    if text == "random" {
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_nanos() as u64);
+        // Short enough to be typed again.
+        return Ok(bits(now, u64::from(std::process::id()), 0) >> 32);
+    }
+    text.parse().map_err(|_| "a seed is a number from 0 to 2^64 - 1, or \"random\"".to_owned())
 }
 
 #[cfg(test)]

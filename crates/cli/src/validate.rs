@@ -1,25 +1,16 @@
 //! `gonio validate`: every physical check, one table, one report, one exit code.
 //!
-//! Three groups of instruments: those of `gonio-lab` on the kernel's lobes, furnace scenes through the whole tracer
-//! ([`scenes`]), and the census of the ray-casting backends ([`census`], by [`crate::census`]). Checks that are not statistical are exact. The
-//! statistical ones share one family-wise significance of 0.01 per run, split in halves: [`SIGNIFICANCE`] for the scenes,
-//! the same for the kernel. What cannot run is named and never counted as passed.
+//! What is measured belongs to `gonio-verify`, what the report looks like to `gonio-report`.
 
-mod census;
-mod census_table;
-pub(crate) mod draw;
-mod grade;
-pub(crate) mod html;
-mod report;
-mod scenes;
 mod table;
 
+use crate::environment;
 use crate::output::{Target, write_text};
-use crate::random::seed;
-use crate::usage::{Usage, spinner};
+use crate::usage::{Usage, seed, spinner};
 use anyhow::{Context, Result};
-use gonio_lab::{Check, Effort, Options, Outcome, validate_kernel};
-use report::Report;
+use gonio_lab::{Check, Effort, Options, Outcome};
+use gonio_report::{Header, Instrument, Validation, json};
+use gonio_verify::{census, instruments, validate};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -64,12 +55,6 @@ pub(crate) struct Args {
     plant_failure: bool,
 }
 
-/// Name of every instrument and what it proves.
-fn instruments() -> Vec<(&'static str, &'static str)> {
-    let own = [scenes::INSTRUMENTS.as_slice(), census::INSTRUMENTS.as_slice()].concat();
-    gonio_lab::instruments().iter().copied().chain(own).collect()
-}
-
 /// Runs the subcommand.
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if args.list {
@@ -98,9 +83,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
         checks.push(check);
     };
-    validate_kernel(&options, &mut sink);
-    let pictures = scenes::run(&options, &args.out, &mut sink)?;
-    let table = census::run(&options, &args.out, &mut sink)?;
+    let found = validate(&options, &args.out, &mut sink)?;
     if args.plant_failure {
         sink(planted_failure());
     }
@@ -113,11 +96,24 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         return Err(Usage(format!("--only {only} matches nothing; instruments are {}", names.join(", "))).into());
     }
 
-    let report = Report::new(&options, checks, table, instruments(), start.elapsed().as_secs_f64());
+    let header = Header::new(
+        env!("CARGO_PKG_VERSION"),
+        options.effort.name(),
+        options.seed,
+        options.only.clone(),
+        &checks,
+        start.elapsed().as_secs_f64(),
+        environment::here(),
+    );
+    let instruments = instruments().into_iter().map(|(name, proves)| Instrument { name, proves }).collect();
+    let report = Validation { header, instruments, checks, census: found.census };
     let json = json_text(&report)?;
     write_text(&Target::File(args.out.join("report.json")), &json)?;
     write_text(&Target::File(args.out.join("summary.json")), &json_text(&report.totals())?)?;
-    write_text(&Target::File(args.out.join("report.html")), &html::page(&report, &pictures, &plots))?;
+    write_text(
+        &Target::File(args.out.join("report.html")),
+        &report.page(&found.exhibits, census::table(&report.census).as_ref(), &plots),
+    )?;
     let printed = if args.json {
         json
     } else {
@@ -128,7 +124,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn json_text(report: &impl Serialize) -> Result<String> {
-    Ok(serde_json::to_string_pretty(report).context("the report cannot be written as JSON")? + "\n")
+    json::text(report).context("the report cannot be written as JSON")
 }
 
 fn planted_failure() -> Check {
@@ -142,9 +138,4 @@ fn planted_failure() -> Check {
         detail: "not a measurement".to_owned(),
         seconds: 0.0,
     }
-}
-
-/// Whether `--only` asks for a check.
-fn wanted(options: &Options, instrument: &str, subject: &str) -> bool {
-    options.only.as_ref().is_none_or(|only| only == instrument || subject.contains(only.as_str()))
 }

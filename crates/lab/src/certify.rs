@@ -7,12 +7,12 @@
 //! cannot be asked says so.
 
 mod certificate;
+mod page;
 #[cfg(test)]
 mod tests;
 
 pub use certificate::Certificate;
 
-use crate::check::Check;
 use crate::finding::Finding;
 use crate::lanes;
 use crate::run::{Options, Task, execute, tasks_of};
@@ -23,6 +23,7 @@ use crate::totality;
 use crate::under_test::UnderTest;
 use crate::white::{self, FurnaceMap};
 use gonio_kernel::{Lobe, Properties};
+use gonio_report::Check;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 

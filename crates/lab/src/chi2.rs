@@ -7,8 +7,8 @@
 //! Poisson test. How N follows from the fault that is to be found: `statistics.rs`.
 
 use crate::cells::{Cells, USUAL_BINS};
-use crate::check::Effort;
 use crate::directions::VIEWS;
+use crate::effort::Effort;
 use crate::finding::{Finding, Run};
 use crate::probe::{BsdfValue, Dir, Kind};
 use crate::random::Random;

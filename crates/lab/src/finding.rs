@@ -1,7 +1,8 @@
 //! `Finding`: what an instrument brings back, before it has a name: a worst number, its limit, and where it was met.
 
-use crate::check::{Check, Effort, Outcome};
+use crate::effort::Effort;
 use crate::random::Random;
+use gonio_report::{Check, Outcome};
 
 /// The conditions under which a task measures.
 #[derive(Clone, Copy, Debug)]

@@ -182,7 +182,7 @@ pub(crate) fn too_dark(eta: f64, roughness: f64, base: f64, layering: Layering) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::check::Effort;
+    use crate::effort::Effort;
 
     const RUN: Run = Run { effort: Effort::Quick, seed: 7, level: 1e-4 };
 

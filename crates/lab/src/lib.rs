@@ -9,6 +9,7 @@
 //! - [`validate_kernel`] runs every instrument over the catalog.
 //! - [`certify`] runs those that make sense for one lobe, yours or ours, and returns a [`Certificate`]; [`certify_single`] does
 //!   it for a lobe that is implemented for `f32` only.
+//! - [`plots`] shows what the instruments see; [`Certificate::page`] puts it all on a page, by means of `gonio-report`.
 //! - A planted fault is a lobe or a building block that is wrong on purpose. Every instrument must catch its faults, or the run fails.
 //!
 //! Statistical tests share one significance: with a correct kernel, a run fails by chance with probability 0.01 at most,
@@ -58,11 +59,11 @@
 mod catalog;
 mod cells;
 mod certify;
-mod check;
 mod chi2;
 mod consistency;
 mod delta;
 mod directions;
+mod effort;
 mod elementary;
 mod faults;
 mod finding;
@@ -79,7 +80,7 @@ pub mod plots;
 mod precision;
 mod probe;
 mod quadrature;
-mod random;
+pub mod random;
 mod reciprocity;
 mod reference;
 mod run;
@@ -97,9 +98,10 @@ mod weight;
 mod white;
 
 pub use certify::{Certificate, certify, certify_single};
-pub use check::{Check, Effort, Outcome};
+pub use effort::Effort;
+pub use gonio_report::{Check, Outcome};
 pub use run::{Options, instruments, validate_kernel};
-pub use speed::{Call, Speed, exercise};
+pub use speed::{Call, Count, Speed, exercise};
 pub use sweep::SafeRange;
 pub use test_bsdf::{Number, TestBsdf};
 pub use white::FurnaceMap;

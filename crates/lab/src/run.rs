@@ -5,7 +5,7 @@
 //! by its name, and results are handed on in the order of the list, so neither threads nor order change anything.
 
 use crate::catalog::{Row, rows, variants};
-use crate::check::{Check, Effort};
+use crate::effort::Effort;
 use crate::faults;
 use crate::finding::{Finding, Run};
 use crate::random::seed_for;
@@ -19,6 +19,7 @@ use crate::{layering, reference, totality, walk, warps, weight};
 use gonio_kernel::lobe::Layering;
 use gonio_kernel::model::Choice;
 use gonio_kernel::{Properties, Surface};
+use gonio_report::Check;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::time::Instant;

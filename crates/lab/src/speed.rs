@@ -22,6 +22,17 @@ pub struct Speed {
     pub ns: f64,
 }
 
+/// The instructions of one kind of call, as somebody counted them who can: this crate cannot.
+#[derive(Clone, Debug, Serialize)]
+pub struct Count {
+    /// `eval` or `sample`.
+    pub call: &'static str,
+    /// `f32` or `lanes`.
+    pub arithmetic: &'static str,
+    /// Instructions per call; of lanes per lane.
+    pub instructions: f64,
+}
+
 /// A call that is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Call {

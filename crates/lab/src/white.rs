@@ -6,13 +6,14 @@
 
 use crate::cells::Cells;
 use crate::finding::{Finding, Run};
-use crate::plots::{Axis, mean_weight};
+use crate::plots::mean_weight;
 use crate::probe::{Dir, Kind, Probe};
 use crate::random::{Random, direction, seed_for};
 use crate::test_bsdf::{DynBsdf, Number};
 use crate::under_test::Claims;
 use gonio_kernel::Properties;
 use gonio_kernel::model::Role;
+use gonio_report::Axis;
 use serde::Serialize;
 
 /// Directional albedos over angle and roughness.

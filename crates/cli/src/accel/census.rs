@@ -1,18 +1,14 @@
 //! `gonio accel census`: the same rays through every backend, and every disagreement with the ray that makes it.
 
 use super::{backends, check_distinct, not_built, specimen};
-use crate::census::family::Family;
-use crate::census::faults::{FAULTS, Fault};
-use crate::census::judge::{Finding, What, judge};
-use crate::census::record::{Log, Row};
-use crate::census::specimen::Specimen;
-use crate::census::{Plan, Witness};
-use crate::environment::Environment;
+use crate::environment;
 use crate::output::{Output, Target, write_text};
 use crate::usage::{Usage, count, spinner};
 use anyhow::{Context, Result};
 use gonio_accel::Intersect;
+use gonio_report::{Environment, json};
 use gonio_tracer::Backend;
+use gonio_verify::census::{self, Contender, FAULTS, Fault, Finding, Log, Row, Settings, What};
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -76,7 +72,7 @@ const SHOWN: usize = 20;
 #[derive(Serialize)]
 struct Report<'a> {
     version: &'static str,
-    scene: String,
+    scene: &'a str,
     triangles: u32,
     closed_triangles: usize,
     seed: u64,
@@ -109,25 +105,24 @@ pub(super) fn run(args: &Args) -> Result<ExitCode> {
     let specimen = specimen(&args.scene)?;
     let intersect = if args.fast { Intersect::Fast } else { Intersect::Robust };
     let asked = backends(&args.backends);
-    let witness = |backend: &Backend, scaled: &Specimen| {
-        let right = Witness::of(*backend, intersect, scaled)?;
-        Ok(match args.plant_fault {
-            Some(fault) => Witness { accel: (fault.plant)(right.accel, scaled.scale), ..right },
-            None => right,
+    let contenders: Vec<Contender> = asked
+        .iter()
+        .map(|&backend| {
+            let right = Contender::of_backend(backend, intersect);
+            match args.plant_fault {
+                Some(fault) => right.with_fault(fault),
+                None => right,
+            }
         })
-    };
-    let witnesses = |scaled: &Specimen| asked.iter().map(|backend| witness(backend, scaled)).collect();
-    let packets = |family: Family| args.rays.saturating_mul(if family.is_inside() { 4 } else { 1 }).div_ceil(8);
-    let plan = Plan {
-        witnesses: &witnesses,
-        scales: &args.scales,
-        packets: &packets,
+        .collect();
+    let settings = Settings {
+        rays: args.rays,
+        scales: args.scales.clone(),
         seed: args.seed,
-        brute_budget: (args.brute_budget * 1e9 / 8.0) as u64, // eight rays at a time
+        brute_pairs: args.brute_budget * 1e9,
     };
-    let mut log = Log::default();
     let spinner = spinner("building the backends");
-    crate::census::run(&specimen, &plan, &mut log, &mut |scale, family| {
+    let census = census::of(&specimen, &contenders, &settings, &mut |scale, family| {
         if let Some(spinner) = &spinner {
             spinner.set_message(format!("scale {scale}: {family} rays"));
         }
@@ -136,13 +131,12 @@ pub(super) fn run(args: &Args) -> Result<ExitCode> {
         spinner.finish_and_clear();
     }
 
-    let findings = judge(&log.rows);
-    let passed = findings.iter().all(Finding::passed);
+    let passed = census.passed();
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
-        scene: specimen.name.clone(),
-        triangles: specimen.count(),
-        closed_triangles: (0..specimen.count()).filter(|&i| specimen.is_closed(specimen.place(i))).count(),
+        scene: &census.scene,
+        triangles: census.triangles,
+        closed_triangles: census.closed_triangles,
         seed: args.seed,
         rays: args.rays,
         scales: &args.scales,
@@ -152,12 +146,12 @@ pub(super) fn run(args: &Args) -> Result<ExitCode> {
         not_run: not_built(),
         passed,
         seconds: start.elapsed().as_secs_f64(),
-        findings: &findings,
-        log: &log,
-        environment: Environment::here(),
+        findings: &census.findings,
+        log: &census.log,
+        environment: environment::here(),
     };
     if let Some(target) = &args.json {
-        let json = serde_json::to_string_pretty(&report).context("the census cannot be written as JSON")? + "\n";
+        let json = json::text(&report).context("the census cannot be written as JSON")?;
         write_text(target, &json)?;
     }
     if args.json != Some(Target::Stdout) {

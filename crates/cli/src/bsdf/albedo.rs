@@ -8,9 +8,9 @@ use super::rows::BATCH;
 use super::sample::uniform;
 use super::{Precision, load};
 use crate::output::{Target, write_text};
-use crate::random::seed_for;
 use crate::usage::count;
 use anyhow::Result;
+use gonio_lab::random::seed_for;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 

@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn eight_side_by_side_give_the_same_bits_as_one_by_one() {
         let u: Vec<[f64; 3]> =
-            (0..1003).map(|i| std::array::from_fn(|k| crate::random::unit(3, i, k as u64))).collect();
+            (0..1003).map(|i| std::array::from_fn(|k| gonio_lab::random::unit(3, i, k as u64))).collect();
         let wo = [0.6, 0.0, 0.8];
         let (ones, eights) = (surface::<f32>().sample(wo, &u), surface::<F32x8>().sample(wo, &u));
         assert_eq!(ones, eights);

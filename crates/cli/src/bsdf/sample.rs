@@ -3,9 +3,9 @@
 use super::rows::{BATCH, RowWriter};
 use super::{Precision, load};
 use crate::output::Target;
-use crate::random::unit;
 use crate::usage::{count, direction, warn};
 use anyhow::Result;
+use gonio_lab::random::unit;
 use std::path::PathBuf;
 
 const COLUMNS: &[&str] =

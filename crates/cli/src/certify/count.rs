@@ -2,22 +2,10 @@
 //! the difference of the two counts over the difference of the calls is what one costs. Start-up cancels.
 
 use super::call;
-use gonio_lab::Call;
-use serde::Serialize;
+use gonio_lab::{Call, Count};
 use std::path::Path;
 use std::process::Command;
 use std::str::FromStr;
-
-/// The instructions of one kind of call.
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct Count {
-    /// `eval` or `sample`.
-    pub(super) call: &'static str,
-    /// `f32` or `lanes`.
-    pub(super) arithmetic: &'static str,
-    /// Instructions per call; of lanes per lane.
-    pub(super) instructions: f64,
-}
 
 /// What a run that is counted does: `eval:lanes:100`.
 #[derive(Clone, Copy, Debug)]

@@ -1,9 +1,9 @@
 //! The report on a terminal: one line per instrument, then what failed, then the sums. Where `--only` asks for few rows,
 //! each is printed with what it found.
 
-use super::grade::{groups, severity, short, verdict, worst};
-use super::report::Report;
-use gonio_lab::{Check, Outcome};
+use gonio_report::grade::{groups, severity, verdict, worst};
+use gonio_report::number::short;
+use gonio_report::{Check, Outcome, Validation};
 
 /// Failing rows that are printed; the rest is in the report.
 const SHOWN: usize = 30;
@@ -13,13 +13,13 @@ const FEW: usize = 64;
 const MEANING: usize = 36;
 
 /// The whole text.
-pub(super) fn text(report: &Report) -> String {
+pub(super) fn text<Census>(report: &Validation<Census>) -> String {
     let groups = groups(&report.checks);
     let width = groups.iter().map(|(name, _)| name.len()).max().unwrap_or(0).max("instrument".len());
     let mut out = format!(
         "gonio {} validate, {} effort, seed {}\n\n{:width$}  rows  {:>9}  {:<9}  {:MEANING$}  {:>7}  result\n",
         report.header.version,
-        report.effort_name(),
+        report.header.effort,
         report.header.seed,
         "instrument",
         "worst",

@@ -1,9 +1,10 @@
 //! `Certificate`: what was found about one lobe, in data and in words.
 
-use crate::check::{Check, Outcome};
 use crate::speed::Speed;
 use crate::sweep::SafeRange;
 use crate::white::FurnaceMap;
+use gonio_report::number::range;
+use gonio_report::{Check, Outcome};
 use serde::Serialize;
 use std::fmt;
 
@@ -81,9 +82,7 @@ fn write_ranges(out: &mut fmt::Formatter, ranges: &[SafeRange]) -> fmt::Result {
         out,
         "\nsafe without a guard, by a sweep: finite and not negative; precise: and f32 as near to f64 as inputs allow"
     )?;
-    let ends = |range: Option<[f64; 2]>| {
-        range.map_or_else(|| "nowhere".to_owned(), |[lo, hi]| format!("{lo:.1e} to {hi:.1e}"))
-    };
+    let ends = |ends| range(ends, "nowhere");
     for r in ranges {
         let [from, to] = r.domain;
         write!(out, "  {:14} {}  safe {:18}", r.number, r.precision, ends(r.safe))?;

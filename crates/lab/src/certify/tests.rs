@@ -1,7 +1,7 @@
 //! Certificates of lobes of every kind, of lawless ones, and of a user's own model.
 
 use super::*;
-use crate::check::Effort;
+use crate::effort::Effort;
 use gonio_kernel::energy::Compensation;
 use gonio_kernel::fresnel::Fresnel;
 use gonio_kernel::lobe::{
