@@ -16,6 +16,7 @@ use crate::{SceneError, paths};
 mod build;
 mod document;
 mod environment;
+mod fields;
 mod file;
 mod material;
 mod nesting;
@@ -59,5 +60,5 @@ fn from_obj(path: &Path, progress: &mut dyn FnMut(Loading)) -> Result<Scene, Sce
     let film = FilmSettings::default();
     let aspect = f64::from(film.width) / f64::from(film.height);
     let camera = CameraSpec::default().complete(builder.bounds, aspect).map_err(|why| blame(why.to_string()))?;
-    Ok(builder.finish(film, camera, IntegratorSettings::default(), Environment::constant(Rgb::splat(1.0))))
+    Ok(builder.finish(film, camera, IntegratorSettings::default(), Environment::constant(Rgb::splat(1.0)), Vec::new()))
 }

@@ -3,10 +3,12 @@
 use std::collections::HashMap;
 use std::mem::take;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 use gonio_kernel::Rgb;
 use gonio_kernel::lobe::Lambert;
+use gonio_tracer::light::LightSource;
 use gonio_tracer::scene::{
     Camera, Environment, FilmSettings, Instance, IntegratorSettings, Loading, LobeSpec, Material, Mesh, Scene, Stage,
 };
@@ -303,10 +305,11 @@ impl Builder {
         camera: Camera,
         integrator: IntegratorSettings,
         environment: Environment,
+        lights: Vec<Arc<dyn LightSource>>,
     ) -> Scene {
         self.warnings.extend(self.libraries.into_iter().flat_map(|(_, library)| library.into_warnings()));
         let shines = |mesh: &Mesh| mesh.materials.iter().any(|&m| self.materials[m as usize].emission.largest() > 0.0);
-        if !self.meshes.iter().any(shines) {
+        if lights.is_empty() && !self.meshes.iter().any(shines) {
             if environment.is_dark() {
                 self.warnings.push("the scene has no light: the picture will be black".to_owned());
             } else if !environment.illuminates {
@@ -323,7 +326,7 @@ impl Builder {
             meshes: self.meshes,
             instances: self.instances,
             environment,
-            lights: Vec::new(),
+            lights,
             warnings: self.warnings,
         }
     }

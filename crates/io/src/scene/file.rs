@@ -1,12 +1,15 @@
 //! The scene file: its sections and keys; defaults are those of the description. `docs/scene-format.md` is written from this file.
 
 use std::path::Path;
+use std::sync::Arc;
 
+use gonio_tracer::light::{self, LightSource};
+use gonio_tracer::scene::fields::{Fields, Refusal};
 use gonio_tracer::scene::{CameraSpec, FilmSettings, IntegratorSettings, Loading, Scene};
 
 use super::build::{Assignment, Builder};
 use super::document::{Document, Table, Value};
-use super::{environment, material, transform};
+use super::{environment, fields, material, transform};
 use crate::error::{SceneError, quoted};
 use crate::paths;
 
@@ -16,13 +19,13 @@ pub(super) fn read(text: &str, path: &Path, progress: &mut dyn FnMut(Loading)) -
     let parsed = document.parse()?;
     let root = Table::new(document, "the scene", 0, parsed.get_ref());
     let section = |key: &'static str| root.get(key).map(|value| value.table(&format!("[{key}]"))).transpose();
-    let film = film(section("film")?)?;
-    let camera_table = section("camera")?;
-    let camera = camera(camera_table.as_ref())?;
-    let integrator = integrator(section("integrator")?)?;
+    let film = or_default(section("film")?.as_mut(), FilmSettings::read)?;
+    let mut camera_table = section("camera")?;
+    let camera = or_default(camera_table.as_mut(), CameraSpec::read)?;
+    let integrator = or_default(section("integrator")?.as_mut(), IntegratorSettings::read)?;
     let environment = section("environment")?;
     let materials = section("materials")?;
-    let meshes = root.get("meshes");
+    let (meshes, lights) = (root.get("meshes"), root.get("lights"));
     root.finish()?;
 
     let mut builder = Builder::default();
@@ -36,10 +39,7 @@ pub(super) fn read(text: &str, path: &Path, progress: &mut dyn FnMut(Loading)) -
         older.into_iter().for_each(|text| builder.warn(text));
         builder.define(material).map_err(|why| value.error(why))?;
     }
-    let meshes = match &meshes {
-        Some(value) => value.array()?,
-        None => Vec::new(),
-    };
+    let (meshes, lights) = (each(meshes.as_ref())?, each(lights.as_ref())?);
     if meshes.is_empty() {
         return Err(document.error(0, "the scene has no [[meshes]]: there is nothing to render"));
     }
@@ -51,7 +51,21 @@ pub(super) fn read(text: &str, path: &Path, progress: &mut dyn FnMut(Loading)) -
         .complete(builder.bounds, width / height)
         .map_err(|error| error.to_string())
         .map_err(|why| camera_table.map_or_else(|| document.error(0, &*why), |table| table.error(&*why)))?;
-    Ok(builder.finish(film, camera, integrator, environment))
+    let lights = lights.iter().map(light).collect::<Result<_, _>>()?;
+    Ok(builder.finish(film, camera, integrator, environment, lights))
+}
+
+/// The items of an array that may be left out.
+fn each<'d>(value: Option<&Value<'d>>) -> Result<Vec<Value<'d>>, SceneError> {
+    value.map_or(Ok(Vec::new()), Value::array)
+}
+
+/// A section that may be left out.
+fn or_default<T: Default>(
+    table: Option<&mut Table<'_>>,
+    read: fn(&mut dyn Fields) -> Result<T, Refusal>,
+) -> Result<T, SceneError> {
+    table.map_or_else(|| Ok(T::default()), |table| fields::read(table, read))
 }
 
 /// The value of an optional key.
@@ -63,39 +77,17 @@ fn or<'d, T>(
     value.as_ref().map_or(Ok(default), read)
 }
 
-fn film(table: Option<Table<'_>>) -> Result<FilmSettings, SceneError> {
-    let mut film = FilmSettings::default();
-    let Some(table) = table else { return Ok(film) };
-    let whole = |value: &Value<'_>, most: u64| value.integer(1..=most).map(|number| number as u32);
-    film.width = or(table.get("width"), film.width, |v| whole(v, 65_536))?;
-    film.height = or(table.get("height"), film.height, |v| whole(v, 65_536))?;
-    film.spp = or(table.get("spp"), film.spp, |v| whole(v, 1 << 20))?;
-    film.exposure = or(table.get("exposure"), film.exposure, |v| v.number(-100.0..=100.0).map(|stops| stops as f32))?;
-    table.finish()?;
-    Ok(film)
-}
-
-fn camera(table: Option<&Table<'_>>) -> Result<CameraSpec, SceneError> {
-    let Some(table) = table else { return Ok(CameraSpec::default()) };
-    let vector = |key| table.get(key).map(|value| value.vector()).transpose();
-    let camera = CameraSpec {
-        origin: vector("origin")?,
-        target: vector("target")?,
-        up: vector("up")?,
-        vfov: or(table.get("vfov"), None, |v| v.number(0.01..=179.0).map(Some))?,
+/// One of `[[lights]]`.
+fn light(value: &Value<'_>) -> Result<Arc<dyn LightSource>, SceneError> {
+    let mut table = value.table("[[lights]]")?;
+    let known = || quoted(light::KINDS.iter().map(|(name, _)| *name));
+    let kind =
+        table.get("type").ok_or_else(|| table.error(format!("[[lights]] needs \"type\", one of {}", known())))?;
+    let name = kind.string()?;
+    let Some((_, read)) = light::KINDS.iter().find(|(known, _)| *known == name) else {
+        return Err(kind.error(format!("there is no light \"{name}\"; known are {}", known())));
     };
-    table.finish()?;
-    Ok(camera)
-}
-
-fn integrator(table: Option<Table<'_>>) -> Result<IntegratorSettings, SceneError> {
-    let mut settings = IntegratorSettings::default();
-    let Some(table) = table else { return Ok(settings) };
-    settings.max_depth = or(table.get("max_depth"), settings.max_depth, |v| v.integer(0..=1024).map(|n| n as u32))?;
-    settings.russian_roulette = or(table.get("russian_roulette"), settings.russian_roulette, Value::boolean)?;
-    settings.seed = or(table.get("seed"), settings.seed, |v| v.integer(0..=u64::MAX))?;
-    table.finish()?;
-    Ok(settings)
+    fields::read(&mut table, read)
 }
 
 fn mesh(value: &Value<'_>, builder: &mut Builder, progress: &mut dyn FnMut(Loading)) -> Result<(), SceneError> {

@@ -3,6 +3,8 @@
 use glam::{DMat4, DVec3};
 use thiserror::Error;
 
+use super::fields::{Fields, Refusal};
+
 /// Vertical field of view in degrees: about a 50 mm lens on 35 mm film held upright.
 const VFOV: f64 = 40.0;
 /// From the target to the camera: right, above and in front, with y up.
@@ -61,6 +63,19 @@ pub enum CameraError {
 }
 
 impl CameraSpec {
+    /// What a scene says of it.
+    ///
+    /// # Errors
+    /// What the fields refuse.
+    pub fn read(fields: &mut dyn Fields) -> Result<Self, Refusal> {
+        Ok(Self {
+            origin: fields.vector("origin")?,
+            target: fields.vector("target")?,
+            up: fields.vector("up")?,
+            vfov: fields.number("vfov", 0.01..=179.0)?,
+        })
+    }
+
     /// Fills in the rest. `bounds` are the least and the largest coordinates of the scene in the world, `aspect` is width
     /// over height.
     ///

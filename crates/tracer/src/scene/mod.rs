@@ -17,9 +17,14 @@ use crate::texture::Texture;
 mod camera;
 mod environment;
 pub mod fields;
+mod film;
+mod integrator;
 
 pub use camera::{Camera, CameraError, CameraSpec};
 pub use environment::{Environment, Sky, SkyMap};
+pub use film::FilmSettings;
+pub use integrator::IntegratorSettings;
+
 /// Largest radiance a material or the environment may have: the film's range ends a little above.
 pub const MAX_RADIANCE: f64 = 1e6;
 /// Largest intensity of a light: 10⁶ W/(m² sr) over a square kilometre.
@@ -52,7 +57,7 @@ pub enum Stage {
 pub struct Scene {
     /// Size of the picture and number of samples.
     pub film: FilmSettings,
-    /// The pinhole camera.
+    /// The camera.
     pub camera: Camera,
     /// Path length and random numbers.
     pub integrator: IntegratorSettings,
@@ -72,42 +77,6 @@ pub struct Scene {
     pub lights: Vec<Arc<dyn LightSource>>,
     /// What was loaded differently from how it was written: one sentence each.
     pub warnings: Vec<String>,
-}
-
-/// Size of the picture and number of samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FilmSettings {
-    /// Pixels per row, 1 to 65536.
-    pub width: u32,
-    /// Rows, 1 to 65536.
-    pub height: u32,
-    /// Samples per pixel, 1 to 2²⁰.
-    pub spp: u32,
-    /// Exposure in stops (factor 2ˣ), applied to the PNG only.
-    pub exposure: f32,
-}
-
-impl Default for FilmSettings {
-    fn default() -> Self {
-        Self { width: 800, height: 600, spp: 64, exposure: 0.0 }
-    }
-}
-
-/// Path length and random numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct IntegratorSettings {
-    /// Number of scattering events after which a path ends; emission seen directly is depth 0.
-    pub max_depth: u32,
-    /// Whether paths that carry little end early by chance (unbiased).
-    pub russian_roulette: bool,
-    /// Seed of all random numbers.
-    pub seed: u64,
-}
-
-impl Default for IntegratorSettings {
-    fn default() -> Self {
-        Self { max_depth: 8, russian_roulette: true, seed: 0 }
-    }
 }
 
 /// A surface: the sum of its lobes, and its own light.
