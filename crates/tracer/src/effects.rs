@@ -42,6 +42,8 @@ effects! {
     Environment = "environment",
     /// Some light is a point.
     PointLights = "point lights",
+    /// Some light is a spot.
+    SpotLights = "spot lights",
     /// Some light is of a user's own kind.
     CustomLights = "custom lights",
     /// Some parameter comes from an image.

@@ -12,10 +12,12 @@ pub(crate) mod environment;
 mod map;
 mod mis;
 pub(crate) mod point;
+pub(crate) mod spot;
 
 pub use delta::{Bounds, Light, LightSource};
 pub use mis::Techniques;
 pub use point::PointLight;
+pub use spot::SpotLight;
 
 use crate::fingerprint::Fingerprint;
 use crate::point::ShadingPoints;
@@ -37,7 +39,7 @@ pub const SHORT_OF_LIGHT: f32 = 1.0 - 16.0 / 16_777_216.0;
 pub type ReadLight = fn(&mut dyn Fields) -> Result<Arc<dyn LightSource>, Refusal>;
 
 /// The kinds of lights that scene files can name, by their `type`.
-pub const KINDS: &[(&str, ReadLight)] = &[("point", PointLight::read)];
+pub const KINDS: &[(&str, ReadLight)] = &[("point", PointLight::read), ("spot", SpotLight::read)];
 
 /// Eight shading points as lights see them.
 #[derive(Clone, Copy, Debug)]
