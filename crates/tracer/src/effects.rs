@@ -44,6 +44,8 @@ effects! {
     PointLights = "point lights",
     /// Some light is a spot.
     SpotLights = "spot lights",
+    /// Some light is infinitely far away.
+    DistantLights = "distant lights",
     /// Some light is of a user's own kind.
     CustomLights = "custom lights",
     /// Some parameter comes from an image.

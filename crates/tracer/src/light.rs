@@ -8,6 +8,7 @@
 
 pub(crate) mod area;
 pub(crate) mod delta;
+pub(crate) mod distant;
 pub(crate) mod environment;
 mod map;
 mod mis;
@@ -15,6 +16,7 @@ pub(crate) mod point;
 pub(crate) mod spot;
 
 pub use delta::{Bounds, Light, LightSource};
+pub use distant::DistantLight;
 pub use mis::Techniques;
 pub use point::PointLight;
 pub use spot::SpotLight;
@@ -39,7 +41,8 @@ pub const SHORT_OF_LIGHT: f32 = 1.0 - 16.0 / 16_777_216.0;
 pub type ReadLight = fn(&mut dyn Fields) -> Result<Arc<dyn LightSource>, Refusal>;
 
 /// The kinds of lights that scene files can name, by their `type`.
-pub const KINDS: &[(&str, ReadLight)] = &[("point", PointLight::read), ("spot", SpotLight::read)];
+pub const KINDS: &[(&str, ReadLight)] =
+    &[("point", PointLight::read), ("spot", SpotLight::read), ("distant", DistantLight::read)];
 
 /// Eight shading points as lights see them.
 #[derive(Clone, Copy, Debug)]
