@@ -94,7 +94,7 @@ impl TileWorker {
             let x = (pixel & U32x8::splat(0xffff)).to_real() + u.unit(0);
             let y = (pixel >> 16).to_real() + u.unit(1);
             self.queue.push(
-                Ray8 { mask: Mask8::first(lanes), ..ctx.world.view.rays(x, y) },
+                Ray8 { mask: Mask8::first(lanes), ..ctx.world.view.rays(x, y, [u.unit(2), u.unit(3)]) },
                 Paths {
                     throughput: Rgb::splat(F32x8::ONE),
                     pdf: F32x8::ZERO,

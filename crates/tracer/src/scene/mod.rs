@@ -14,13 +14,12 @@ use crate::material::CustomLobe;
 use crate::normal_map::NormalMap;
 use crate::texture::Texture;
 
-mod camera;
 mod environment;
 pub mod fields;
 mod film;
 mod integrator;
 
-pub use camera::{Camera, CameraError, CameraSpec};
+pub use crate::camera::{Camera, CameraError, CameraSpec};
 pub use environment::{Environment, Sky, SkyMap};
 pub use film::FilmSettings;
 pub use integrator::IntegratorSettings;

@@ -36,6 +36,7 @@ pub(super) fn of(scene: &Scene, meshes: &[Mesh], materials: &[PreparedMaterial],
         needs.effects.need(material.effects(), name);
         material.models().for_each(|model| needs.effects.need_model(model, name()));
     }
+    needs.effects.need(scene.camera.effects(), || "the camera".to_owned());
     needs.effects.need(scene.environment.effects(), || "the environment".to_owned());
     for (number, light) in (1..).zip(&scene.lights) {
         needs.effects.need(light.effects(), || format!("light {number}"));

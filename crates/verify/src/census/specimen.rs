@@ -51,7 +51,7 @@ impl Specimen {
         let [lo, hi] = bounds(&geometry).map(wide);
         let [origin, target] = [hi + (hi - lo) * 0.7, (lo + hi) * 0.5].map(|v| [v.x, v.y, v.z].into());
         let film = FilmSettings { width: 256, height: 256, spp: 1, exposure: 0.0 };
-        let camera = Camera { origin, target, up: [0.0, 1.0, 0.0].into(), vfov: 50.0 };
+        let camera = Camera::pinhole(origin, target, [0.0, 1.0, 0.0].into(), 50.0);
         let view = View::new(&camera, &film, [0.0; 3].into());
         Self::new(name, geometry, view, Vec::new())
     }
@@ -127,7 +127,7 @@ impl Specimen {
 
     /// Camera rays through places of the picture in pixels, y down.
     pub(crate) fn camera(&self, x: F32x8, y: F32x8) -> Ray8 {
-        let ray = self.view.rays(x, y);
+        let ray = self.view.rays(x, y, [F32x8::splat(0.5); 2]);
         Ray8 { origin: ray.origin * F32x8::splat(self.scale as f32), ..ray }
     }
 }
