@@ -2,10 +2,11 @@
 
 use glam::{DMat4, DVec3};
 use gonio_accel::Ray8;
+use gonio_kernel::warp::sample_cosine_hemisphere;
 use gonio_kernel::{F32x8, Real, Vec3};
 use thiserror::Error;
 
-use crate::effects::EffectSet;
+use crate::effects::{Effect, EffectSet};
 use crate::scene::FilmSettings;
 use crate::scene::fields::{Fields, Refusal};
 
@@ -16,7 +17,7 @@ const THREE_QUARTER: DVec3 = DVec3::new(0.6, 0.45, 1.0);
 /// Room around the scene.
 const MARGIN: f64 = 1.08;
 
-/// A pinhole camera. `up` is not parallel to the view direction, and `target` is not `origin`.
+/// A camera with a thin lens, or a pinhole. `up` is not parallel to the view direction, and `target` is not `origin`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Position, in metres.
@@ -27,6 +28,10 @@ pub struct Camera {
     pub up: DVec3,
     /// Vertical field of view in degrees, above 0 and below 180.
     pub vfov: f64,
+    /// Diameter of the lens \[m\]; 0 for a pinhole, which has everything in focus.
+    pub aperture: f64,
+    /// Distance of the plane in focus from the camera's plane \[m\], above 0.
+    pub focus_distance: f64,
 }
 
 /// What a scene says about its camera; what is `None` follows from the scene's bounds.
@@ -49,6 +54,10 @@ pub struct CameraSpec {
     pub up: Option<DVec3>,
     /// Vertical field of view in degrees; otherwise 40.
     pub vfov: Option<f64>,
+    /// Diameter of the lens \[m\]; otherwise 0, a pinhole.
+    pub aperture: Option<f64>,
+    /// Distance of the plane in focus from the camera's plane \[m\]; otherwise that of `target`.
+    pub focus_distance: Option<f64>,
 }
 
 /// Why a camera has no view.
@@ -77,6 +86,8 @@ impl CameraSpec {
             target: fields.vector("target")?,
             up: fields.vector("up")?,
             vfov: fields.number("vfov", 0.01..=179.0)?,
+            aperture: fields.number("aperture", 0.0..=1e9)?,
+            focus_distance: fields.number("focus_distance", 1e-9..=1e12)?,
         })
     }
 
@@ -95,19 +106,24 @@ impl CameraSpec {
         if sideways.length() < 1e-6 {
             return Err(CameraError::UpAlongView);
         }
-        Ok(Camera::pinhole(origin, target, up, vfov))
+        let pinhole = Camera::pinhole(origin, target, up, vfov);
+        Ok(Camera {
+            aperture: self.aperture.unwrap_or(pinhole.aperture),
+            focus_distance: self.focus_distance.unwrap_or(pinhole.focus_distance),
+            ..pinhole
+        })
     }
 }
 
 impl Camera {
     /// A camera that has everything in focus.
     pub fn pinhole(origin: DVec3, target: DVec3, up: DVec3, vfov: f64) -> Self {
-        Self { origin, target, up, vfov }
+        Self { origin, target, up, vfov, aperture: 0.0, focus_distance: (target - origin).length() }
     }
 
     /// What it calls for.
     pub(crate) fn effects(&self) -> EffectSet {
-        EffectSet::NONE
+        EffectSet::when(self.aperture > 0.0, Effect::DepthOfField)
     }
 
     /// World to camera, and world to normalized device coordinates, as OpenEXR defines both for row vectors: p·M, rows one
@@ -143,8 +159,17 @@ pub struct View {
     pub(crate) forward: Vec3<f32>,
     right: Vec3<f32>,
     up: Vec3<f32>,
+    lens: Option<Lens>,
     /// Columns and rows of the picture.
     size: [f32; 2],
+}
+
+/// A thin lens: half its width and height as vectors, and the distance at which it is focused.
+#[derive(Clone, Copy, Debug)]
+struct Lens {
+    right: Vec3<f32>,
+    up: Vec3<f32>,
+    focus: f32,
 }
 
 impl View {
@@ -161,13 +186,20 @@ impl View {
             forward: narrow(forward),
             right: narrow(right * tan * aspect),
             up: narrow(up * tan),
+            lens: (camera.aperture > 0.0).then(|| Lens {
+                right: narrow(right * (0.5 * camera.aperture)),
+                up: narrow(up * (0.5 * camera.aperture)),
+                focus: camera.focus_distance as f32,
+            }),
             size: [film.width as f32, film.height as f32],
         }
     }
 
     /// All numbers that its rays depend on.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = f32> {
-        [self.origin, self.forward, self.right, self.up].into_iter().flat_map(<[f32; 3]>::from).chain(self.size)
+        let lens = self.lens.into_iter().flat_map(|l| [l.right.into(), l.up.into(), [l.focus; 3]]).flatten();
+        let frame = [self.origin, self.forward, self.right, self.up].into_iter().flat_map(<[f32; 3]>::from);
+        frame.chain(self.size).chain(lens)
     }
 
     /// Columns and rows of the picture.
@@ -178,13 +210,21 @@ impl View {
     /// The rays through places (x, y) of the picture in pixels, (0, 0) at the top left corner of the top left pixel; `u` are
     /// numbers in [0, 1) that choose a place on the lens, its middle for ½ and ½.
     #[inline(always)]
-    pub fn rays(&self, x: F32x8, y: F32x8, _u: [F32x8; 2]) -> Ray8 {
+    pub fn rays(&self, x: F32x8, y: F32x8, u: [F32x8; 2]) -> Ray8 {
         let [width, height] = self.size.map(F32x8::splat);
         let two = F32x8::splat(2.0);
         let (x, y) = (x * two / width - F32x8::ONE, F32x8::ONE - y * two / height);
         let forward = Vec3::broadcast(self.forward);
-        let dir = forward.along(x, Vec3::broadcast(self.right)).along(y, Vec3::broadcast(self.up)).normalize();
-        Ray8::new(Vec3::broadcast(self.origin), dir)
+        let dir = forward.along(x, Vec3::broadcast(self.right)).along(y, Vec3::broadcast(self.up));
+        let Some(lens) = self.lens else {
+            return Ray8::new(Vec3::broadcast(self.origin), dir.normalize());
+        };
+        // The x and y of a cosine-distributed direction are uniform on the disk (Malley's method).
+        let place = sample_cosine_hemisphere(u);
+        let offset = (Vec3::broadcast(lens.right) * place.x).along(place.y, Vec3::broadcast(lens.up));
+        // All rays through a place of the picture meet where the pinhole's ray crosses the plane in focus.
+        let dir = dir * F32x8::splat(lens.focus) - offset;
+        Ray8::new(Vec3::broadcast(self.origin) + offset, dir.normalize())
     }
 }
 
@@ -248,6 +288,28 @@ mod tests {
         };
         assert_eq!(seen(target), [0.5, 0.5]);
         assert_eq!(seen(target + DVec3::new(-8.0, 4.0, 0.0)), [0.0, 0.0]); // 4 away, tan 45° = 1, twice as wide as high
+    }
+
+    #[test]
+    fn rays_through_the_lens_meet_in_the_plane_in_focus() {
+        let pinhole = Camera::pinhole(DVec3::new(1.0, 2.0, 3.0), DVec3::ZERO, DVec3::Y, 50.0);
+        let lens = Camera { aperture: 0.5, focus_distance: 2.0, ..pinhole };
+        let film = FilmSettings { width: 40, height: 30, ..FilmSettings::default() };
+        let view = View::new(&lens, &film, DVec3::ZERO);
+        let axis = (lens.target - lens.origin).normalize();
+        let (x, y) = (F32x8::splat(31.0), F32x8::splat(4.0));
+        let sharp = View::new(&pinhole, &film, DVec3::ZERO).rays(x, y, [F32x8::splat(0.5); 2]);
+        let u = [F32x8::from_fn(|l| l as f32 / 8.0), F32x8::from_fn(|l| (3 * l % 8) as f32 / 8.0)];
+        let rays = view.rays(x, y, u);
+        let of = |v: &Vec3<F32x8>, l: usize| DVec3::new(v.x.lane(l).into(), v.y.lane(l).into(), v.z.lane(l).into());
+        let meet = of(&sharp.origin, 0) + of(&sharp.dir, 0) * (2.0 / of(&sharp.dir, 0).dot(axis));
+        for l in 0..F32x8::LANES {
+            let (origin, dir) = (of(&rays.origin, l), of(&rays.dir, l));
+            assert!((origin - lens.origin).dot(axis).abs() < 1e-6);
+            assert!((origin - lens.origin).length() <= 0.25 + 1e-6);
+            let away = meet - origin;
+            assert!((away - dir * away.dot(dir)).length() < 1e-5, "lane {l}");
+        }
     }
 
     #[test]

@@ -48,6 +48,8 @@ effects! {
     DistantLights = "distant lights",
     /// Some light is of a user's own kind.
     CustomLights = "custom lights",
+    /// The camera has a lens.
+    DepthOfField = "depth of field",
     /// Some parameter comes from an image.
     Textures = "textures",
     /// Some mesh has shading normals.
