@@ -26,7 +26,7 @@ fn sky(rotation: f64) -> SkyMap {
         _ => [(x * 7 + y * 3) % 11, (x * 5 + y) % 7, (x + y * 9) % 13].map(|k| 0.1 * k as f32),
     };
     let rgb = (0..16).flat_map(|y| (0..32).map(move |x| texel(x, y))).collect();
-    SkyMap { picture: Arc::new(Picture { width: 32, height: 16, rgb }), rotation, intensity: 0.5 }
+    SkyMap { picture: Arc::new(Picture { width: 32, height: 16, rgb, alpha: None }), rotation, intensity: 0.5 }
 }
 
 /// Radiance from (u, v): bilinear between texel centres, columns wrap, the first and last row hold up to the poles.

@@ -126,7 +126,7 @@ fn formula(folder: &Folder) -> std::path::PathBuf {
     };
     let rgb = (0..12).flat_map(|row| (0..24).map(move |column| texel(row, column))).collect();
     let path = folder.path().join("formula.exr");
-    exr::write(&path, &Picture { width: 24, height: 12, rgb }, None, &Metadata::default())
+    exr::write(&path, &Picture { width: 24, height: 12, rgb, alpha: None }, None, &Metadata::default())
         .expect("the folder takes files");
     path
 }

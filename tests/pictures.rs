@@ -53,7 +53,7 @@ fn under_a_map() -> Scene {
     let mut scene = varied();
     let mut random = Random(9);
     let rgb = (0..32 * 16).map(|_| [random.unit(), random.unit(), random.unit().powi(8) * 20.0]).collect();
-    let picture = Arc::new(Picture { width: 32, height: 16, rgb });
+    let picture = Arc::new(Picture { width: 32, height: 16, rgb, alpha: None });
     scene.environment.sky = Sky::Map(SkyMap { picture, rotation: 100.0, intensity: 0.5 });
     scene
 }

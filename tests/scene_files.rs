@@ -318,7 +318,7 @@ fn a_bad_line_in_a_library_costs_only_that_line() {
 #[test]
 fn base_colour_images_are_found_decoded_and_shared() {
     let folder = Folder::new();
-    let red = Picture { width: 1, height: 1, rgb: vec![[1.0, 0.0, 0.0]] };
+    let red = Picture { width: 1, height: 1, rgb: vec![[1.0, 0.0, 0.0]], alpha: None };
     fs::create_dir_all(folder.path().join("tex")).unwrap();
     png::write(&folder.path().join("tex/red wood.png"), &red, 0.0).unwrap();
     folder.write(
@@ -344,7 +344,7 @@ fn base_colour_images_are_found_decoded_and_shared() {
 #[test]
 fn pictures_that_cannot_be_written_say_so_and_leave_nothing_behind() {
     let folder = Folder::new();
-    let picture = Picture { width: 1, height: 1, rgb: vec![[1.0; 3]] };
+    let picture = Picture { width: 1, height: 1, rgb: vec![[1.0; 3]], alpha: None };
     let nowhere = folder.path().join("absent/a.exr");
     let text = exr::write(&nowhere, &picture, None, &Metadata::default()).unwrap_err().to_string();
     assert!(folder.strip(&text).starts_with("absent/a.exr: cannot be written: "), "{text}");

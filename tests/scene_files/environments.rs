@@ -17,7 +17,7 @@ fn every_key_of_an_environment_map_arrives_and_odd_texels_are_dealt_with() {
     let folder = Folder::new();
     folder.write("tri.obj", TRIANGLE);
     let rgb = vec![[1.0, 2.0, 3.0], [0.5, -1.0, 0.0], [0.0; 3], [-0.0, -2.0, 1.0], [4.0; 3], [5.0; 3]];
-    let map = Picture { width: 3, height: 2, rgb };
+    let map = Picture { width: 3, height: 2, rgb, alpha: None };
     exr::write(&folder.path().join("sky.exr"), &map, None, &Metadata::default()).unwrap();
     let text =
         under("map = \"sky.exr\"\nrotation = -30\nintensity = 0.25\ncamera_visible = false\nilluminates = true\n");
@@ -32,7 +32,7 @@ fn every_key_of_an_environment_map_arrives_and_odd_texels_are_dealt_with() {
         "{warnings:?}"
     );
 
-    let black = Picture { width: 1, height: 1, rgb: vec![[0.0; 3]] };
+    let black = Picture { width: 1, height: 1, rgb: vec![[0.0; 3]], alpha: None };
     exr::write(&folder.path().join("sky.exr"), &black, None, &Metadata::default()).unwrap();
     let scene = gonio_io::load(&folder.write("scene.toml", under("map = \"sky.exr\"\n"))).unwrap();
     assert!(folder.warnings(&scene).contains(&"the scene has no light: the picture will be black".to_owned()));
@@ -44,14 +44,15 @@ fn environments_that_cannot_be_used_are_refused_in_words() {
     let folder = Folder::new();
     folder.write("tri.obj", TRIANGLE);
     let texels = |name: &str, texel: [f32; 3]| {
-        let picture = Picture { width: 2, height: 2, rgb: vec![[1.0; 3], [1.0; 3], [1.0; 3], texel] };
+        let picture = Picture { width: 2, height: 2, rgb: vec![[1.0; 3], [1.0; 3], [1.0; 3], texel], alpha: None };
         exr::write(&folder.path().join(name), &picture, None, &Metadata::default()).unwrap();
     };
     texels("sky.exr", [2e6, 1.0, 1.0]);
     texels("nan.exr", [f32::NAN, 1.0, 1.0]);
     texels("inf.exr", [1.0, 1.0, f32::INFINITY]);
     folder.write("cut.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n@`p\u{7f}@`p");
-    png::write(&folder.path().join("sky.png"), &Picture { width: 1, height: 1, rgb: vec![[1.0; 3]] }, 0.0).unwrap();
+    png::write(&folder.path().join("sky.png"), &Picture { width: 1, height: 1, rgb: vec![[1.0; 3]], alpha: None }, 0.0)
+        .unwrap();
     let cases = [
         ("map = \"none.hdr\"", "scene.toml:4: the file \"none.hdr\" does not exist"),
         (

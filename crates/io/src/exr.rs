@@ -1,6 +1,6 @@
 //! OpenEXR files: a picture with everything needed to render it again.
 //!
-//! An EXR file has one part, whose channels are `R`, `G`, `B` and, with [`Layers`](gonio_tracer::Layers), `albedo.R` … `sampleCount`: dotted names
+//! An EXR file has one part, whose channels are `R`, `G`, `B`, `A` if it is known, and, with [`Layers`](gonio_tracer::Layers), `albedo.R` … `sampleCount`: dotted names
 //! are how compositors find layers. Channels are f32, `sampleCount` is u32. A crop's data window lies where the crop lies in
 //! the display window of the whole picture.
 

@@ -75,7 +75,7 @@ fn read_radiance(path: &Path, bytes: &[u8]) -> Result<(Picture, Vec<String>), Im
     }
     let mut rgb = vec![[0.0_f32; 3]; header.width as usize * header.height as usize];
     decoder.read_image(bytemuck::cast_slice_mut(&mut rgb)).map_err(refuse)?;
-    Ok((Picture { width: header.width, height: header.height, rgb }, warnings))
+    Ok((Picture { width: header.width, height: header.height, rgb, alpha: None }, warnings))
 }
 
 /// Whether a Radiance header asks for CIE XYZ.

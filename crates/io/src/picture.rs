@@ -18,5 +18,5 @@ pub fn read_picture(path: &Path) -> Result<Picture, ImageError> {
     }
     let (width, height, encoded) = read_srgb8(path).map_err(|why| ImageError::of(path, why))?;
     let rgb = encoded.into_iter().map(|pixel| pixel.map(linear_from_srgb8)).collect();
-    Ok(Picture { width, height, rgb })
+    Ok(Picture { width, height, rgb, alpha: None })
 }

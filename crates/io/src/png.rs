@@ -60,7 +60,7 @@ mod tests {
     #[test]
     fn a_png_has_srgb_values_of_the_exposed_picture() {
         let rgb = vec![[0.0, 0.25, 0.5], [-1.0, f32::NAN, f32::INFINITY]];
-        let bytes = encode(&Picture { width: 2, height: 1, rgb }, 1.0).unwrap();
+        let bytes = encode(&Picture { width: 2, height: 1, rgb, alpha: None }, 1.0).unwrap();
         let read = image::load_from_memory(&bytes).unwrap().into_rgb8();
         assert_eq!(read.as_raw().as_slice(), [0, 188, 255, 0, 0, 255]); // 0.25 twice as bright: 0.5 is 187.5 of 255
     }

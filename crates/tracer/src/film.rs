@@ -93,7 +93,12 @@ impl Film {
         let dropped = pixels.iter().map(|p| u64::from(p.dropped())).sum();
         let (width, height) = (self.crop.x1 - self.crop.x0, self.crop.y1 - self.crop.y0);
         Rendering {
-            picture: Picture { width, height, rgb: pixels.iter().map(Pixel::mean).collect() },
+            picture: Picture {
+                width,
+                height,
+                rgb: pixels.iter().map(Pixel::mean).collect(),
+                alpha: Some(pixels.iter().map(Pixel::alpha).collect()),
+            },
             layers,
             stats: stats.finish(seconds, self.spp_done, dropped, pixel::hash(pixels.iter()), self.threads),
         }

@@ -31,6 +31,8 @@ pub(crate) struct TileWorker {
     pixel: Vec<u32>,
     sample: Vec<u32>,
     radiance: Vec<[f32; 3]>,
+    /// Whether the camera ray met a surface.
+    met: Vec<bool>,
     /// The part of it that scattered at most once; empty unless layers are gathered, as is the next.
     direct: Vec<[f32; 3]>,
     first: Vec<FirstHit>,
@@ -61,7 +63,7 @@ impl TileWorker {
             {
                 let (x, y) = (pixel & 0xffff, pixel >> 16);
                 let at = ((y - tile.y0) * tile.width + (x - tile.x0)) as usize;
-                let counts = tile.pixels[at].add(rgb, pixel, sample);
+                let counts = tile.pixels[at].add(rgb, pixel, sample, self.met[path]);
                 if let Some(unit) = depth_unit.filter(|_| counts) {
                     tile.layers[at].add(rgb, self.direct[path], &self.first[path], unit, (pixel, sample));
                 }
@@ -84,6 +86,8 @@ impl TileWorker {
         }
         self.radiance.clear();
         self.radiance.resize(self.pixel.len(), [0.0; 3]);
+        self.met.clear();
+        self.met.resize(self.pixel.len(), true);
 
         for start in (0..self.pixel.len()).step_by(F32x8::LANES) {
             let lanes = (self.pixel.len() - start).min(F32x8::LANES);
@@ -122,6 +126,13 @@ impl TileWorker {
             let material_of = |instance, prim| ctx.world.surfaces.material(instance, prim);
             self.order.sort(&self.queue.rays, &self.hits, materials.len(), material_of);
             stats.closest_rays += self.order.lanes.len() as u64;
+
+            if depth == 0 {
+                for &lane in self.order.range(0, 1) {
+                    let (block, lane) = (lane as usize / F32x8::LANES, lane as usize % F32x8::LANES);
+                    self.met[self.queue.paths[block].path.lane(lane) as usize] = false;
+                }
+            }
 
             self.next.clear();
             self.shadow.clear();

@@ -144,7 +144,7 @@ mod tests {
         let (mut pixel, mut sums) = (Pixel::default(), LayerSums::default());
         for (i, (rgb, first)) in samples.iter().enumerate() {
             let place = (7, i as u32);
-            if pixel.add(*rgb, place.0, place.1) {
+            if pixel.add(*rgb, place.0, place.1, true) {
                 sums.add(*rgb, rgb.map(|x| 0.25 * x), first, unit, place);
             }
         }

@@ -123,6 +123,7 @@ mod tests {
             width: 20,
             height: 20,
             rgb: (0..400).map(|i| std::array::from_fn(|k| 1.0 + 0.1 * noise(i, k))).collect(),
+            alpha: None,
         };
         let limit = level(0.005, tests(20, 20));
         assert!(worst_block(&picture, [1.0; 3], 0.0).p > limit);

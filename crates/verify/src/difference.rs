@@ -72,7 +72,7 @@ pub fn difference(a: &Picture, b: &Picture, significance: f64) -> Difference {
         [0, 1, 2].map(|c| pairs().map(|(a, b)| value(f64::from(a[c]), f64::from(b[c]))).sum::<f64>() / n)
     };
     let rgb = pairs().map(|(a, b)| [b[0] - a[0], b[1] - a[1], b[2] - a[2]]).collect();
-    let picture = Picture { width: a.width, height: a.height, rgb };
+    let picture = Picture { width: a.width, height: a.height, rgb, alpha: None };
     let means = [mean_of(&|a, _| a), mean_of(&|_, b| b)];
     let close = |a: f32, b: f32, mean: f64| f64::from((b - a).abs()) <= NOTICEABLE * f64::from(a.abs()).max(mean.abs());
     let differs: Vec<bool> =
@@ -137,7 +137,7 @@ pub fn magnified(a: &Picture, difference: &Picture) -> (Picture, f64) {
     let most = if most > 0.0 { most } else { sizes.last().map_or(0.0, |&x| f64::from(x)) };
     let gain = if most > 0.0 { mean / most } else { 1.0 };
     let show = |x: f32| around_mid_grey(gain * f64::from(x) / mean);
-    (Picture { rgb: difference.rgb.iter().map(|rgb| rgb.map(show)).collect(), ..*difference }, gain)
+    (Picture { rgb: difference.rgb.iter().map(|rgb| rgb.map(show)).collect(), alpha: None, ..*difference }, gain)
 }
 
 #[cfg(test)]
@@ -147,14 +147,15 @@ mod tests {
 
     fn noisy(seed: u64) -> Picture {
         let pixel = |i: u64| [0, 1, 2].map(|c| (1.0 + 0.2 * (unit(seed, i, c) - 0.5)) as f32);
-        Picture { width: 40, height: 24, rgb: (0..960).map(pixel).collect() }
+        Picture { width: 40, height: 24, rgb: (0..960).map(pixel).collect(), alpha: None }
     }
 
     #[test]
     fn noise_is_chance_and_a_tint_of_one_block_is_not() {
         let (a, mut b) = (noisy(1), noisy(2));
         assert!(difference(&a, &b, 0.01).explained_by_chance());
-        let rounded = Picture { rgb: a.rgb.iter().map(|rgb| rgb.map(|x| x * (1.0 + 5e-7))).collect(), ..a };
+        let rounded =
+            Picture { rgb: a.rgb.iter().map(|rgb| rgb.map(|x| x * (1.0 + 5e-7))).collect(), alpha: None, ..a };
         let found = difference(&a, &rounded, 0.01);
         assert!(found.explained_by_chance() && found.unequal > 900 && found.differing == 0);
         for y in 8..16 {
@@ -169,7 +170,7 @@ mod tests {
 
     #[test]
     fn the_errors_are_what_they_are_called() {
-        let flat = |x: f32| Picture { width: 8, height: 8, rgb: vec![[x, 0.0, 2.0]; 64] };
+        let flat = |x: f32| Picture { width: 8, height: 8, rgb: vec![[x, 0.0, 2.0]; 64], alpha: None };
         let found = difference(&flat(1.0), &flat(1.5), 0.01);
         assert_eq!((found.means[0][0], found.means[1][0]), (1.0, 1.5));
         assert_eq!((found.rmse, found.differing, found.isolated), ([0.5, 0.0, 0.0], 64, 0));

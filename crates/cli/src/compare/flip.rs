@@ -17,7 +17,7 @@ mod tests {
 
     #[test]
     fn equal_pictures_are_0_apart_and_black_and_white_nearly_1() {
-        let flat = |x: f32| Picture { width: 16, height: 16, rgb: vec![[x; 3]; 256] };
+        let flat = |x: f32| Picture { width: 16, height: 16, rgb: vec![[x; 3]; 256], alpha: None };
         assert_eq!(mean(&flat(0.5), &flat(0.5)), 0.0);
         assert!(mean(&flat(0.0), &flat(1.0)) > 0.9);
     }

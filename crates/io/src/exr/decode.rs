@@ -38,7 +38,7 @@ pub fn read(path: &Path) -> Result<Picture, ImageError> {
     let size = image.layer_data.size;
     let (_, rgb) = image.layer_data.channel_data.pixels;
     match (u32::try_from(size.width()), u32::try_from(size.height())) {
-        (Ok(width), Ok(height)) => Ok(Picture { width, height, rgb }),
+        (Ok(width), Ok(height)) => Ok(Picture { width, height, rgb, alpha: None }),
         _ => Err(ImageError::of(path, "is too large")),
     }
 }

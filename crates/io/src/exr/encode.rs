@@ -27,6 +27,9 @@ pub fn encode(picture: &Picture, layers: Option<&Layers>, metadata: &Metadata) -
     check(picture)?;
     let mut channels = Vec::new();
     colours(&mut channels, "", ["R", "G", "B"], &picture.rgb);
+    if let Some(alpha) = &picture.alpha {
+        channels.push(Channel::new(text("A"), exr::FlatSamples::F32(alpha.clone())));
+    }
     if let Some(layers) = layers {
         layer_channels(&mut channels, layers);
     }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 fn picture() -> Picture {
     let rgb = (0..15).map(|i| [i as f32, 1e-9 * i as f32, 1e9]).collect();
-    Picture { width: 5, height: 3, rgb }
+    Picture { width: 5, height: 3, rgb, alpha: None }
 }
 
 fn folder(name: &str) -> PathBuf {
@@ -95,7 +95,7 @@ fn layers_are_channels_with_dotted_names() {
 
 #[test]
 fn pictures_of_the_wrong_size_are_refused() {
-    let picture = Picture { width: 2, height: 2, rgb: vec![[0.0; 3]; 3] };
+    let picture = Picture { width: 2, height: 2, rgb: vec![[0.0; 3]; 3], alpha: None };
     let error = write(Path::new("a.exr"), &picture, None, &Metadata::default()).unwrap_err();
     assert_eq!(error.to_string(), "a.exr: a picture of 2 x 2 cannot have 3 pixels");
     let error = read(Path::new("absent.exr")).unwrap_err().to_string();

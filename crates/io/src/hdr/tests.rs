@@ -50,6 +50,7 @@ fn flat_pixels_old_runs_and_new_runs_are_the_same_picture() {
         width: 9,
         height: 1,
         rgb: [[[1.0, 0.25, 0.5]; 7].as_slice(), &[[0.0; 3], [4080.0, 0.0, 16.0]]].concat(),
+        alpha: None,
     };
     for pixels in [&flat, &old, &new] {
         assert_eq!(folder.read(&radiance(RGBE, 9, 1, pixels)).unwrap(), (right.clone(), vec![]));
@@ -116,7 +117,7 @@ fn every_open_exr_that_is_cut_or_changed_is_read_or_refused_without_panic() {
     let folder = Folder::new("changed");
     let path = folder.0.join("a.exr");
     let rgb = (0..64 * 40).map(|i| [i as f32, 0.5, 1.0 / (1 + i) as f32]).collect();
-    write(&path, &Picture { width: 64, height: 40, rgb }, None, &Metadata::default()).unwrap();
+    write(&path, &Picture { width: 64, height: 40, rgb, alpha: None }, None, &Metadata::default()).unwrap();
     let whole = fs::read(&path).unwrap();
     for length in (0..whole.len()).step_by(61) {
         fs::write(&path, &whole[..length]).unwrap();
@@ -136,7 +137,8 @@ fn every_open_exr_that_is_cut_or_changed_is_read_or_refused_without_panic() {
 fn an_open_exr_that_promises_too_much_is_refused_before_anything_is_allocated() {
     let folder = Folder::new("lies");
     let path = folder.0.join("a.exr");
-    write(&path, &Picture { width: 2, height: 2, rgb: vec![[1.0; 3]; 4] }, None, &Metadata::default()).unwrap();
+    write(&path, &Picture { width: 2, height: 2, rgb: vec![[1.0; 3]; 4], alpha: None }, None, &Metadata::default())
+        .unwrap();
     let mut bytes = fs::read(&path).unwrap();
     // Both windows: name, 0, type, 0, size, then x and y of the first and of the last pixel.
     for name in ["dataWindow\0box2i\0", "displayWindow\0box2i\0"] {

@@ -19,13 +19,17 @@ pub(crate) struct Pixel {
     sum: [i64; 3],
     count: u32,
     dropped: u32,
+    /// Samples whose camera ray met a surface.
+    met: u32,
 }
 
 impl Pixel {
-    /// Adds a sample; `pixel` and `sample` address its dither. Whether it counts, or was dropped.
+    /// Adds a sample; `pixel` and `sample` address its dither, `met` says whether its camera ray met a surface. Whether it
+    /// counts, or was dropped.
     #[inline]
-    pub(crate) fn add(&mut self, rgb: [f32; 3], pixel: u32, sample: u32) -> bool {
+    pub(crate) fn add(&mut self, rgb: [f32; 3], pixel: u32, sample: u32, met: bool) -> bool {
         self.count += 1;
+        self.met += u32::from(met);
         // A NaN fails the comparison.
         let counts = rgb.iter().all(|x| x.abs() < LARGEST);
         if counts {
@@ -48,6 +52,11 @@ impl Pixel {
     pub(crate) fn mean_of(&self, sum: [i64; 3]) -> [f32; 3] {
         let scale = if self.count > 0 { 1.0 / (UNIT * f64::from(self.count)) } else { 0.0 };
         sum.map(|s| (s as f64 * scale) as f32)
+    }
+
+    /// The share of the samples whose camera ray met a surface; 0 if there are none.
+    pub(crate) fn alpha(&self) -> f32 {
+        if self.count > 0 { (f64::from(self.met) / f64::from(self.count)) as f32 } else { 0.0 }
     }
 
     /// Σx over the samples, in units.
@@ -90,7 +99,7 @@ pub(crate) fn round_to_i64(x: f64) -> i64 {
     (x + MAGIC).to_bits().wrapping_sub(MAGIC.to_bits()).cast_signed()
 }
 
-/// A hash of all sums and counts, in pixel order: equal pictures have equal hashes, to the last bit.
+/// A hash of the radiance's sums and of the counts, in pixel order: equal pictures have equal hashes, to the last bit.
 pub(crate) fn hash<'a>(pixels: impl Iterator<Item = &'a Pixel>) -> String {
     let mut fingerprint = Fingerprint::new();
     for p in pixels {
@@ -109,10 +118,10 @@ mod tests {
         let samples: Vec<[f32; 3]> = (0..1000).map(|i| [0.1 * i as f32, 1e-6 * i as f32, 2e6 - i as f32]).collect();
         let (mut forward, mut backward) = (Pixel::default(), Pixel::default());
         for (i, s) in samples.iter().enumerate() {
-            forward.add(*s, 9, i as u32);
+            forward.add(*s, 9, i as u32, i % 2 == 0);
         }
         for (i, s) in samples.iter().enumerate().rev() {
-            backward.add(*s, 9, i as u32);
+            backward.add(*s, 9, i as u32, i % 2 == 0);
         }
         assert_eq!(forward, backward);
     }
@@ -122,7 +131,7 @@ mod tests {
         // 1e-6 is about four units; rounding noise of n samples has a standard error of half a unit over √n.
         let n = 200_000;
         let mut p = Pixel::default();
-        assert!((0..n).all(|i| p.add([1e-6; 3], 1, i)));
+        assert!((0..n).all(|i| p.add([1e-6; 3], 1, i, true)));
         assert!((f64::from(p.mean()[0]) - 1e-6).abs() < 5.0 * 0.5 / UNIT / f64::from(n).sqrt());
     }
 
@@ -130,10 +139,11 @@ mod tests {
     fn what_is_not_finite_or_too_large_is_dropped_and_counted() {
         let mut p = Pixel::default();
         for x in [f32::NAN, f32::INFINITY, -f32::INFINITY, LARGEST] {
-            assert!(!p.add([x, 0.0, 0.0], 0, 0));
+            assert!(!p.add([x, 0.0, 0.0], 0, 0, false));
         }
-        assert!(p.add([4.0, 0.0, LARGEST.next_down()], 0, 0));
+        assert!(p.add([4.0, 0.0, LARGEST.next_down()], 0, 0, true));
         assert_eq!(p.dropped(), 4);
+        assert_eq!(p.alpha(), 0.2);
         assert!((p.mean()[0] - 0.8).abs() < 1e-6);
     }
 }

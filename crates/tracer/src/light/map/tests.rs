@@ -11,7 +11,7 @@ const SIGNIFICANCE: f64 = 0.01;
 fn picture(width: u32, height: u32, f: impl Fn(u32, u32, u32) -> f32) -> Arc<Picture> {
     let rgb = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
     let rgb = rgb.map(|(x, y)| [f(x, y, 0), f(x, y, 1), f(x, y, 2)]).collect();
-    Arc::new(Picture { width, height, rgb })
+    Arc::new(Picture { width, height, rgb, alpha: None })
 }
 
 /// Texels of all magnitudes, some of them black; the same for the same seed.
