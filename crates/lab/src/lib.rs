@@ -102,6 +102,7 @@ pub use effort::Effort;
 pub use gonio_report::{Check, Outcome};
 pub use run::{Options, instruments, validate_kernel};
 pub use speed::{Call, Count, Speed, exercise};
+pub use statistics::sidak;
 pub use sweep::SafeRange;
 pub use test_bsdf::{Number, TestBsdf};
 pub use white::FurnaceMap;

@@ -1,6 +1,6 @@
 //! Random numbers for the instruments, by address.
 //!
-//! [`unit`] and [`bits`] hash (seed, index, dimension) with no state in between, so that row *i* of a table depends on the seed and *i*
+//! [`unit()`] and [`bits`] hash (seed, index, dimension) with no state in between, so that row *i* of a table depends on the seed and *i*
 //! alone: asking for more rows never changes those before. Inside of this crate there is one independent stream per test besides,
 //! addressed by seed and name.
 //!

@@ -42,6 +42,11 @@ impl Options {
     pub fn new(effort: Effort) -> Self {
         Self { effort, seed: 1, only: None, significance: FAMILY_SIGNIFICANCE }
     }
+
+    /// Whether a check is asked for.
+    pub fn want(&self, instrument: &str, subject: &str) -> bool {
+        self.only.as_ref().is_none_or(|only| only == instrument || subject.contains(only.as_str()))
+    }
 }
 
 /// The instruments: name, and what it proves in one sentence.
@@ -124,9 +129,6 @@ impl<'a> Task<'a> {
         measure: impl Fn(&Run) -> Finding + Send + Sync + 'a,
     ) -> Self {
         Self { instrument, subject: subject.into(), tests, measure: Box::new(measure) }
-    }
-    fn wanted(&self, only: Option<&str>) -> bool {
-        only.is_none_or(|only| self.instrument == only || self.subject.contains(only))
     }
     fn run(&self, options: &Options, level: f64) -> Check {
         let start = Instant::now();
@@ -238,7 +240,7 @@ fn kernel_tasks() -> Vec<Task<'static>> {
 
 /// Runs the wanted tasks on all threads and hands on the checks in order.
 pub(crate) fn execute(tasks: Vec<Task>, options: &Options, sink: &mut dyn FnMut(Check)) {
-    let tasks: Vec<Task> = tasks.into_iter().filter(|task| task.wanted(options.only.as_deref())).collect();
+    let tasks: Vec<Task> = tasks.into_iter().filter(|task| options.want(task.instrument, &task.subject)).collect();
     let level = sidak(options.significance, tasks.iter().map(|task| task.tests).sum());
     let threads = std::thread::available_parallelism().map_or(1, usize::from).min(tasks.len().max(1));
     let next = AtomicUsize::new(0);

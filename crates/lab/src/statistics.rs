@@ -30,8 +30,8 @@ pub(crate) const FAULT_SIZE: f64 = 0.01;
 /// What is left of the non-centrality when cells do not line up with the fault: see the head of this file.
 const ALIGNMENT: f64 = 0.65;
 
-/// The level of each of n tests.
-pub(crate) fn sidak(significance: f64, tests: usize) -> f64 {
+/// The level of each of n tests that together fail by chance with probability `significance` at most (Šidák).
+pub fn sidak(significance: f64, tests: usize) -> f64 {
     // 1 − (1 − s)^(1/n) without cancellation.
     -((-significance).ln_1p() / tests.max(1) as f64).exp_m1()
 }

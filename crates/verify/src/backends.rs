@@ -10,7 +10,7 @@ use crate::census::{
 };
 use crate::error::Error;
 use crate::shipped::{CORNELL_BOX, unpack};
-use crate::validation::{outcome, wanted};
+use crate::validation::outcome;
 use gonio_accel::{Geometry, Intersect};
 use gonio_lab::random::seed_for;
 use gonio_lab::{Check, Effort, Options, Outcome};
@@ -69,8 +69,8 @@ fn measure(specimen: &Specimen, options: &Options, log: &mut Log, sink: &mut dyn
     };
     let names: Vec<String> = Backend::ALL.iter().map(Backend::to_string).collect();
     let packets = |family: Family| {
-        let census = names.iter().any(|name| wanted(options, "census", &census_subject(name, specimen, family)));
-        let leaks = names.iter().any(|name| wanted(options, "leaks", &leak_subject(name, specimen)));
+        let census = names.iter().any(|name| options.want("census", &census_subject(name, specimen, family)));
+        let leaks = names.iter().any(|name| options.want("leaks", &leak_subject(name, specimen)));
         if census || (leaks && family.is_aimed_between_triangles()) { rays / 8 } else { 0 }
     };
     let start = Instant::now();
@@ -97,7 +97,7 @@ fn measure(specimen: &Specimen, options: &Options, log: &mut Log, sink: &mut dyn
             let of = |row: &&Row| row.backend == *name && row.family == family && is_judged(row);
             let subject = census_subject(name, specimen, family);
             let Some(total) = sum(rows.iter().filter(of)) else { continue };
-            if wanted(options, "census", &subject) {
+            if options.want("census", &subject) {
                 let hits = 100.0 * total.hits as f64 / total.rays.max(1) as f64;
                 let detail = first(name, &|row| row.family == family)
                     .unwrap_or_else(|| format!("{} rays, {hits:.0} % of them hit", total.rays));
@@ -107,7 +107,7 @@ fn measure(specimen: &Specimen, options: &Options, log: &mut Log, sink: &mut dyn
         }
         let subject = leak_subject(name, specimen);
         let of = |row: &&Row| row.backend == *name && forbids_leaks(row);
-        if let Some(total) = sum(rows.iter().filter(of)).filter(|_| wanted(options, "leaks", &subject)) {
+        if let Some(total) = sum(rows.iter().filter(of)).filter(|_| options.want("leaks", &subject)) {
             let detail = first(name, &|row| row.leaks > 0).unwrap_or_else(|| format!("{} rays", total.must_hit));
             sink(check("leaks", subject, total.leaks, 0, "rays that get through ≤", detail, seconds));
         }
@@ -127,7 +127,7 @@ fn planted_faults(specimen: &Specimen, options: &Options, sink: &mut dyn FnMut(C
             let lax = fault.noticed_by == Standard::Close && specimen.name != "sphere";
             let word = if standard == Standard::Exact { "bit for bit" } else { "within tolerance" };
             let subject = format!("census: {} on {}, {word}", fault.name, specimen.name);
-            if (lax || standard == Standard::Exact) && wanted(options, "planted-faults", &subject) {
+            if (lax || standard == Standard::Exact) && options.want("planted-faults", &subject) {
                 let start = Instant::now();
                 let (failed, detail) = planted(specimen, fault, standard, options)?;
                 let seconds = start.elapsed().as_secs_f64();
@@ -187,7 +187,7 @@ fn check(
 /// Backends that this build does not have, by name: silence would read as success.
 fn not_run(options: &Options, sink: &mut dyn FnMut(Check)) {
     let absent = !Backend::ALL.iter().any(|backend| backend.to_string() == "embree");
-    if absent && wanted(options, "census", "embree") {
+    if absent && options.want("census", "embree") {
         let why = "this build has no Embree backend (feature `embree`): its census did not run";
         let mut row = check("census", "embree".to_owned(), 0, 0, "", String::new(), 0.0);
         row.outcome = Outcome::NotRun(why.to_owned());

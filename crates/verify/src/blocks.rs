@@ -11,12 +11,6 @@ use statrs::function::beta::beta_reg;
 /// Pixels along the edge of a block.
 const BLOCK: u32 = 8;
 
-/// The level of each of n tests that together fail by chance with probability `family` at most (Šidák).
-pub(crate) fn level(family: f64, tests: usize) -> f64 {
-    // 1 − (1 − s)^(1/n) without cancellation.
-    -((-family).ln_1p() / tests.max(1) as f64).exp_m1()
-}
-
 /// How many tests [`worst_block`] makes of a picture: three channels of each block and of the whole.
 pub(crate) fn tests(width: u32, height: u32) -> usize {
     3 * ((width.div_ceil(BLOCK) * height.div_ceil(BLOCK)) as usize + 1)
@@ -125,7 +119,7 @@ mod tests {
             rgb: (0..400).map(|i| std::array::from_fn(|k| 1.0 + 0.1 * noise(i, k))).collect(),
             alpha: None,
         };
-        let limit = level(0.005, tests(20, 20));
+        let limit = gonio_lab::sidak(0.005, tests(20, 20));
         assert!(worst_block(&picture, [1.0; 3], 0.0).p > limit);
         for y in 0..8 {
             for x in 0..8 {

@@ -249,3 +249,41 @@ pub(crate) fn run(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gonio_accel::{Brute, Hit8, Opacity, Ray8, RayKind};
+    use gonio_kernel::{F32x8, Mask, Mask8, U32x8};
+
+    /// Hits wherever it is asked, and names a triangle that is not there.
+    struct Liar;
+
+    impl Accel for Liar {
+        fn name(&self) -> &'static str {
+            "liar"
+        }
+        fn closest(&self, _: RayKind, _: &[Ray8], hits: &mut [Hit8]) {
+            for hit in hits {
+                *hit = Hit8 { t: F32x8::splat(f32::NAN), prim: U32x8::splat(1 << 30), ..Hit8::miss() };
+            }
+        }
+        fn occluded(&self, _: RayKind, _: &[Ray8], _: Option<&dyn Opacity>, blocked: &mut [Mask8]) {
+            blocked.fill(Mask8::splat(true));
+        }
+    }
+
+    #[test]
+    fn a_backend_that_names_what_is_not_there_fails_by_every_standard_and_right_ones_do_not() {
+        let settings = Settings { rays: 64, ..Settings::default() };
+        for specimen in specimens() {
+            for standard in [Standard::Exact, Standard::Close] {
+                let wrong = of_accel(&specimen.geometry, &Liar, standard, &settings).unwrap();
+                assert!(!wrong.passed() && !wrong.log.disagreements.is_empty(), "{}", specimen.name);
+            }
+            let brute = Brute::new(&specimen.geometry);
+            let right = of_accel(&specimen.geometry, &brute, Standard::Exact, &settings).unwrap();
+            assert!(right.passed(), "{}: {}", specimen.name, right.log.disagreements[0]);
+        }
+    }
+}

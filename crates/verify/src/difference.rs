@@ -1,6 +1,7 @@
 //! How two pictures of one scene differ, and whether chance explains it.
 
-use crate::blocks::{level, test_blocks, tests};
+use crate::blocks::{test_blocks, tests};
+use gonio_lab::sidak;
 use gonio_report::around_mid_grey;
 use gonio_tracer::Picture;
 
@@ -80,7 +81,7 @@ pub fn difference(a: &Picture, b: &Picture, significance: f64) -> Difference {
     let width = a.width as usize;
 
     let tests = tests(a.width, a.height);
-    let level = level(significance, tests);
+    let level = sidak(significance, tests);
     let (mut failed, mut worst_p, mut worst_place) = (0, f64::INFINITY, String::new());
     let slack = means[0].map(|mean| ROUNDING * mean.abs());
     for tested in test_blocks(&picture, [0.0; 3], slack) {

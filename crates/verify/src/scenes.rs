@@ -15,12 +15,12 @@
 
 mod furnace;
 
-use crate::blocks::{Worst, level, tests, worst_block};
+use crate::blocks::{Worst, tests, worst_block};
 use crate::error::Error;
-use crate::validation::{outcome, wanted};
+use crate::validation::outcome;
 use furnace::{FURNACES, Furnace, Shot};
 use gonio_io::png;
-use gonio_lab::{Check, Effort, Options};
+use gonio_lab::{Check, Effort, Options, sidak};
 use gonio_report::{Exhibit, Speed};
 use gonio_tracer::{Backend, Picture};
 use std::path::Path;
@@ -42,7 +42,7 @@ const SAME_MEAN: f64 = 1e-4;
 pub(crate) fn run(options: &Options, out: &Path, sink: &mut dyn FnMut(Check)) -> Result<Vec<Exhibit>, Error> {
     let folder = out.join("scenes");
     let tests: usize = FURNACES.iter().map(|f| f.shots().len() * tests(f.size, f.size)).sum();
-    let level = level(options.significance, tests);
+    let level = sidak(options.significance, tests);
     let mut exhibits = Vec::new();
     for furnace in &FURNACES {
         let instruments = INSTRUMENTS.iter().map(|(name, _)| *name).chain(["planted-faults"]);
@@ -63,7 +63,7 @@ fn measure(
 ) -> Result<Exhibit, Error> {
     let scene = furnace.unpack(folder)?;
     let mut send = |check: Check| {
-        if wanted(options, &check.instrument, &check.subject) {
+        if options.want(&check.instrument, &check.subject) {
             sink(check);
         }
     };

@@ -39,11 +39,6 @@ pub fn validate(options: &Options, out: &Path, sink: &mut dyn FnMut(Check)) -> R
     Ok(Found { exhibits, census })
 }
 
-/// Whether `--only` asks for a check.
-pub(crate) fn wanted(options: &Options, instrument: &str, subject: &str) -> bool {
-    options.only.as_ref().is_none_or(|only| only == instrument || subject.contains(only.as_str()))
-}
-
 /// Passed or failed.
 pub(crate) fn outcome(passed: bool) -> Outcome {
     if passed { Outcome::Passed } else { Outcome::Failed }

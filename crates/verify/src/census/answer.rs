@@ -128,8 +128,7 @@ fn close(specimen: &Specimen, ray: &Ray, a: &Hit, b: &Hit) -> Option<Kind> {
     if !same && !within(off, tolerance) {
         return Some(Kind::Prim);
     }
-    let instances = specimen.geometry.instances();
-    if instances.get(b.instance as usize).is_none_or(|i| i.mesh != b.mesh || !has_prim(specimen, b)) {
+    if !specimen.has(b) {
         return Some(Kind::Prim); // names nothing that exists
     }
     let corners = specimen.corners(Place { instance: b.instance, prim: b.prim }).map(wide);
@@ -148,10 +147,6 @@ fn close(specimen: &Specimen, ray: &Ray, a: &Hit, b: &Hit) -> Option<Kind> {
 /// Places as far from the origin as the ray's own start are rounded.
 fn rounding(ray: &Ray) -> f64 {
     8.0 * f64::from(f32::EPSILON) * wide(ray.origin).length()
-}
-
-fn has_prim(specimen: &Specimen, hit: &Hit) -> bool {
-    specimen.geometry.meshes().get(hit.mesh as usize).is_some_and(|mesh| (hit.prim as usize) < mesh.triangles.len())
 }
 
 fn id(hit: &Hit) -> [u32; 3] {

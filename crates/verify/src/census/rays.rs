@@ -138,7 +138,8 @@ fn from_hits(
 ) -> Vec<Ray8> {
     let packets = rays.iter().zip(hits).enumerate();
     let made = packets.map(|(i, (ray, hit))| {
-        let found = each_lane(|l| hit.lane(l));
+        // A scout that is wrong may name what is not there: no ray starts from it.
+        let found = each_lane(|l| hit.lane(l).filter(|hit| specimen.has(hit)));
         let live = (0..8).fold(0, |bits, l| bits | u32::from(found[l].is_some()) << l);
         let corners = each_lane(|l| match found[l] {
             Some(hit) => specimen.corners(Place { instance: hit.instance, prim: hit.prim }),

@@ -3,7 +3,7 @@
 use super::aim::wide;
 use super::topology::Topology;
 use crate::error::Error;
-use gonio_accel::{Geometry, Instance, Ray8, WorldTriangle};
+use gonio_accel::{Geometry, Hit, Instance, Ray8, WorldTriangle};
 use gonio_kernel::{F32x8, Vec3};
 use gonio_tracer::scene::{Camera, FilmSettings};
 use gonio_tracer::{View, World};
@@ -96,6 +96,13 @@ impl Specimen {
     pub(crate) fn place(&self, i: u32) -> Place {
         let instance = self.starts.partition_point(|&start| start <= i).saturating_sub(1);
         Place { instance: instance as u32, prim: i - self.starts[instance] }
+    }
+
+    /// Whether a hit names a triangle that there is.
+    pub(crate) fn has(&self, hit: &Hit) -> bool {
+        let instance = self.geometry.instances().get(hit.instance as usize).filter(|i| i.mesh == hit.mesh);
+        let mesh = instance.and_then(|i| self.geometry.meshes().get(i.mesh as usize));
+        mesh.is_some_and(|mesh| (hit.prim as usize) < mesh.triangles.len())
     }
 
     /// The corners of a triangle in the world.
