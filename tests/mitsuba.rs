@@ -173,6 +173,41 @@ fn normal_maps_agree_with_mitsuba() {
     println!("as it should be: {}", compare("normal_map", &steep).unwrap_err());
 }
 
+/// The scene of `tests/reference/lights.py`.
+fn lights() -> Scene {
+    gonio_io::load(&repository("tests/reference/lights.toml")).expect("the scene is shipped")
+}
+
+#[test]
+fn point_spot_and_distant_lights_agree_with_mitsuba() {
+    compare("lights", &lights()).unwrap();
+    // Each light a fiftieth brighter, and the spot's edge a degree sharper: all are seen.
+    let text = std::fs::read_to_string(repository("tests/reference/lights.toml")).expect("the scene is shipped");
+    for (is, would_be) in [
+        ("[6, 8, 10]", "[6.12, 8.16, 10.2]"),
+        ("[60, 45, 30]", "[61.2, 45.9, 30.6]"),
+        ("[0.9, 1.0, 1.2]", "[0.918, 1.02, 1.224]"),
+        ("beam_width = 9", "beam_width = 10"),
+    ] {
+        assert!(text.contains(is));
+        let wrong = text.replace(is, would_be);
+        let scene = gonio_io::scene_from_toml_str(&wrong, &repository("tests/reference/lights.toml"));
+        println!("as it should be: {}", compare("lights", &scene.expect("it is sound")).unwrap_err());
+    }
+}
+
+#[test]
+fn a_thin_lens_agrees_with_mitsuba() {
+    let mut scene = lights();
+    (scene.camera.aperture, scene.camera.focus_distance) = (0.3, 4.0);
+    compare("lens", &scene).unwrap();
+    // The lens twice as wide (its radius taken for its diameter), or focused elsewhere: both are seen.
+    scene.camera.aperture = 0.6;
+    println!("as it should be: {}", compare("lens", &scene).unwrap_err());
+    (scene.camera.aperture, scene.camera.focus_distance) = (0.3, 8.0);
+    println!("as it should be: {}", compare("lens", &scene).unwrap_err());
+}
+
 /// The 8 × 8 map with its green channel pointing down the image.
 fn turned_over(map: &NormalMap) -> NormalMap {
     let at = |i: u32| (i as f32 + 0.5) / 8.0;

@@ -1,5 +1,8 @@
 //! Lights that no ray meets: delta lights, and whatever a user adds. Only light samples find them, so their weight is 1.
 //!
+//! Half of their samples are shared out by power, half evenly: power says nothing of distance, and a weak lamp near a surface
+//! must not be starved by a bright sun.
+//!
 //! A new kind is a type with [`LightSource`], which describes it in the scene, and one with [`Light`], which is sampled.
 
 use super::{LightSample, Reference};
@@ -51,12 +54,12 @@ pub trait Light: Debug + Send + Sync {
     fn numbers(&self) -> Vec<f32>;
 }
 
-/// All such lights of a world, chosen by power.
+/// All such lights of a world.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DeltaLights {
     lights: Vec<Arc<dyn Light>>,
     alias: Vec<(f32, u32)>,
-    /// Each one's share of their power, and once the share of all is set, of all light samples.
+    /// Each one's share of their samples, and once the share of all is set, of all light samples.
     probability: Vec<f32>,
 }
 
@@ -64,10 +67,11 @@ impl DeltaLights {
     /// Lights of positive power; the others are left out.
     pub(crate) fn new(mut lights: Vec<Arc<dyn Light>>) -> Self {
         lights.retain(|light| light.power() > 0.0);
-        let powers: Vec<f64> = lights.iter().map(|light| light.power()).collect();
-        let sum: f64 = powers.iter().sum();
-        let probability = powers.iter().map(|power| (power / sum) as f32).collect();
-        Self { alias: alias_table(&powers), lights, probability }
+        let sum: f64 = lights.iter().map(|light| light.power()).sum();
+        let even = 1.0 / lights.len() as f64;
+        let shares: Vec<f64> = lights.iter().map(|light| 0.5 * (light.power() / sum + even)).collect();
+        let probability = shares.iter().map(|&share| share as f32).collect();
+        Self { alias: alias_table(&shares), lights, probability }
     }
 
     pub(crate) fn is_empty(&self) -> bool {
