@@ -88,6 +88,7 @@ mod speed;
 mod statistics;
 mod sweep;
 pub mod tables;
+mod task;
 mod test_bsdf;
 mod totality;
 mod under_test;
@@ -98,8 +99,9 @@ mod white;
 
 pub use certify::{Certificate, certify, certify_single};
 pub use check::{Check, Effort, Outcome};
-pub use run::{Options, instruments, validate_kernel};
+pub use run::{instruments, validate_kernel};
 pub use speed::{Call, Speed, exercise};
 pub use sweep::SafeRange;
+pub use task::Options;
 pub use test_bsdf::{Number, TestBsdf};
 pub use white::FurnaceMap;

@@ -4,96 +4,19 @@
 //! residual of reciprocity over both angles in units of rounding (is it noise, or structure?), and the residuals of the χ²
 //! test, over its cells and as a histogram beside the normal distribution (is it noise, or structure?).
 
+mod figure;
+
+pub use figure::{Axis, Colours, Figure, Histogram, Map, Plot};
+
 use crate::catalog::variants;
 use crate::chi2::observed_and_expected;
 use crate::finding::Run;
-use crate::probe::{Dir, Kind, Probe};
+use crate::probe::Probe;
 use crate::random::{direction, seed_for};
-use crate::run::Options;
+use crate::task::Options;
 use crate::test_bsdf::{DynBsdf, TestBsdf};
 use crate::under_test::UnderTest;
-use crate::white::{self, Varied};
-use gonio_kernel::Rgb;
-
-/// A plot with its words.
-#[derive(Clone, Debug)]
-pub struct Plot {
-    /// The lobe that it shows.
-    pub lobe: String,
-    /// The instrument whose view it is.
-    pub instrument: &'static str,
-    /// What is drawn.
-    pub title: String,
-    /// How to read it.
-    pub caption: String,
-    /// The numbers.
-    pub figure: Figure,
-}
-
-/// The numbers of a plot.
-#[derive(Clone, Debug)]
-pub enum Figure {
-    /// A value over two coordinates.
-    Map(Map),
-    /// How often a value occurs.
-    Histogram(Histogram),
-}
-
-/// A value over two coordinates.
-#[derive(Clone, Debug)]
-pub struct Map {
-    /// To the right.
-    pub x: Axis,
-    /// Upwards.
-    pub y: Axis,
-    /// Values per row.
-    pub columns: usize,
-    /// Rows from the bottom. A value that is not a number has no colour.
-    pub values: Vec<f64>,
-    /// How a value becomes a colour.
-    pub colours: Colours,
-}
-
-/// How often a value occurs, and how often it should.
-#[derive(Clone, Debug)]
-pub struct Histogram {
-    /// The value.
-    pub x: Axis,
-    /// Counts of equal intervals of the axis.
-    pub bars: Vec<f64>,
-    /// Expected counts of the same intervals.
-    pub expected: Vec<f64>,
-}
-
-/// An axis: what it measures, and from where to where.
-#[derive(Clone, Debug)]
-pub struct Axis {
-    /// Name with unit.
-    pub name: &'static str,
-    /// Its beginning.
-    pub lo: f64,
-    /// Its end.
-    pub hi: f64,
-    /// Whether equal steps are equal factors.
-    pub log: bool,
-}
-
-/// How a value becomes a colour; what lies outside of the range has the colour of its end.
-#[derive(Clone, Copy, Debug)]
-pub enum Colours {
-    /// From the least to the most.
-    Linear(f64, f64),
-    /// From minus to plus so much, with a neutral middle.
-    Diverging(f64),
-}
-
-impl Axis {
-    /// The middle of interval `i` of `n`.
-    fn at(&self, i: usize, n: usize) -> f64 {
-        let share = (i as f64 + 0.5) / n as f64;
-        if self.log { self.lo * (self.hi / self.lo).powf(share) } else { self.lo + (self.hi - self.lo) * share }
-    }
-}
+use crate::white::{self, Varied, mean_weight};
 
 /// The plots of one lobe: its white twin's albedo, its own reciprocity and χ².
 pub fn of<'t>(name: &str, lobe: &impl TestBsdf<'t>, options: &Options) -> Vec<Plot> {
@@ -163,24 +86,6 @@ fn albedo(name: &str, bsdf: &dyn DynBsdf, is_white: bool) -> Plot {
         caption: format!("{light}, over angle and {}.", y.name),
         figure: Figure::Map(Map { x: COSINE_OUT, y, columns: COLUMNS, values, colours: Colours::Linear(0.0, 1.0) }),
     }
-}
-
-/// The mean weight of samples on a grid of 32² random numbers, as a luminance.
-pub(crate) fn mean_weight(probe: &dyn Probe, wo: Dir) -> f64 {
-    const GRID: usize = 32;
-    const GOLDEN: f64 = 0.618_033_988_749_894_9; // its multiples fill [0, 1) evenly
-    let at = |i: usize| (i as f64 + 0.5) / GRID as f64;
-    let u: Vec<[f64; 3]> =
-        (0..GRID * GRID).map(|i| [(i as f64 * GOLDEN).fract(), at(i % GRID), at(i / GRID)]).collect();
-    let mut draws = Vec::with_capacity(u.len());
-    probe.sample_all(wo, &u, &mut draws);
-    let weight = |wi, kind| match kind {
-        Kind::Failed => [0.0; 3],
-        Kind::Continuous => probe.eval(wo, wi).weight(),
-        Kind::Delta(value, _) => value.weight(),
-    };
-    let luminance = |[r, g, b]: [f64; 3]| Rgb::new(r, g, b).luminance();
-    draws.iter().map(|draw| luminance(weight(draw.wi, draw.kind))).sum::<f64>() / u.len() as f64
 }
 
 /// What is not all delta has both; what light passes through only the latter.

@@ -5,11 +5,11 @@
 //! by its name, and results are handed on in the order of the list, so neither threads nor order change anything.
 
 use crate::catalog::{Row, rows, variants};
-use crate::check::{Check, Effort};
+use crate::check::Check;
 use crate::faults;
 use crate::finding::{Finding, Run};
-use crate::random::seed_for;
-use crate::statistics::{FAMILY_SIGNIFICANCE, sidak};
+use crate::statistics::sidak;
+use crate::task::{Options, Task};
 use crate::under_test::{UnderTest, View};
 use crate::{
     chi2, consistency, delta, elementary, frames, furnace, lanes, mitsuba, normal_map, normalisation, precision,
@@ -21,27 +21,6 @@ use gonio_kernel::model::Choice;
 use gonio_kernel::{Properties, Surface};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
-use std::time::Instant;
-
-/// What to run, and how thoroughly.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// How many rows and samples.
-    pub effort: Effort,
-    /// Where all random numbers of a run come from. A correct kernel passes with any seed.
-    pub seed: u64,
-    /// Only checks whose instrument has this name, or whose subject contains this text.
-    pub only: Option<String>,
-    /// The probability with which all statistical tests of the run together may fail a correct kernel.
-    pub significance: f64,
-}
-
-impl Options {
-    /// Everything, at the given effort, with the usual seed.
-    pub fn new(effort: Effort) -> Self {
-        Self { effort, seed: 1, only: None, significance: FAMILY_SIGNIFICANCE }
-    }
-}
 
 /// The instruments: name, and what it proves in one sentence.
 pub fn instruments() -> &'static [(&'static str, &'static str)] {
@@ -103,36 +82,6 @@ pub fn validate_kernel(options: &Options, sink: &mut dyn FnMut(Check)) {
     }
     tasks.extend(faults::tasks());
     execute(tasks, options, sink);
-}
-
-/// One row of the report, not yet measured.
-pub(crate) struct Task<'a> {
-    instrument: &'static str,
-    subject: String,
-    /// How many p-values it judges at the level of a single test.
-    tests: usize,
-    measure: Box<dyn Fn(&Run) -> Finding + Send + Sync + 'a>,
-}
-
-impl<'a> Task<'a> {
-    /// A task.
-    pub(crate) fn new(
-        instrument: &'static str,
-        subject: impl Into<String>,
-        tests: usize,
-        measure: impl Fn(&Run) -> Finding + Send + Sync + 'a,
-    ) -> Self {
-        Self { instrument, subject: subject.into(), tests, measure: Box::new(measure) }
-    }
-    fn wanted(&self, only: Option<&str>) -> bool {
-        only.is_none_or(|only| self.instrument == only || self.subject.contains(only))
-    }
-    fn run(&self, options: &Options, level: f64) -> Check {
-        let start = Instant::now();
-        let seed = seed_for(options.seed, &format!("{} {}", self.instrument, self.subject));
-        let finding = (self.measure)(&Run { effort: options.effort, seed, level });
-        finding.into_check(self.instrument, self.subject.clone(), start.elapsed().as_secs_f64())
-    }
 }
 
 /// Tests of the integral instruments: one p-value per view.
