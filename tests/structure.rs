@@ -12,7 +12,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The crates that are held to have no import cycles, each with its root.
-const ACYCLIC: [(&str, &str); 1] = [("xtask/src", "main.rs")];
+const ACYCLIC: [(&str, &str); 4] = [
+    ("crates/kernel/src", "lib.rs"),
+    ("crates/accel/src", "lib.rs"),
+    ("crates/lab/src", "lib.rs"),
+    ("xtask/src", "main.rs"),
+];
 
 #[test]
 fn no_module_imports_itself_through_others() {

@@ -37,7 +37,7 @@ impl Graph {
     }
 }
 
-/// For each import that lies on a cycle a shortest such cycle, each cycle once: `a → b (a.rs:3) → a (b.rs:7)`.
+/// For each import that lies on a cycle a shortest such cycle, less those that go through all modules of a shorter one: `a → b (a.rs:3) → a (b.rs:7)`.
 pub(crate) fn cycles(graph: &Graph) -> Vec<String> {
     let mut found = BTreeSet::new();
     for (from, imports) in &graph.edges {
@@ -49,7 +49,15 @@ pub(crate) fn cycles(graph: &Graph) -> Vec<String> {
             }
         }
     }
-    found.iter().map(|cycle| chain(graph, cycle)).collect()
+    let mut found: Vec<Vec<String>> = found.into_iter().collect();
+    found.sort_by_key(Vec::len);
+    let mut least: Vec<Vec<String>> = Vec::new();
+    for cycle in found {
+        if !least.iter().any(|shorter| shorter.iter().all(|module| cycle.contains(module))) {
+            least.push(cycle);
+        }
+    }
+    least.iter().map(|cycle| chain(graph, cycle)).collect()
 }
 
 fn chain(graph: &Graph, cycle: &[String]) -> String {

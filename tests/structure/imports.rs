@@ -1,19 +1,20 @@
 //! What a module imports: A imports B if code of A that is no test names an item of B by any path.
 //!
 //! A path that leads through a `pub use` counts for the module that defines the item. A parent's `mod` and `pub use` of its
-//! children do not count. Macros are read as tokens: whatever looks like a path is one.
+//! children do not count. Macros are read as tokens: whatever looks like a path is one. In the text of a `macro_rules!` only paths from
+//! `$crate` or `crate` count, because others mean what they mean where the macro is called.
 
 use super::cycles::Graph;
 use super::modules::{Crate, Target, attributes, is_test, leaves};
 use proc_macro2::{TokenStream, TokenTree};
 use syn::visit::{self, Visit};
-use syn::{Attribute, ImplItem, Item, ItemMod, ItemUse, Macro, Path, TraitItem, VisRestricted, Visibility};
+use syn::{Attribute, ImplItem, Item, ItemMacro, ItemMod, ItemUse, Macro, Path, TraitItem, VisRestricted, Visibility};
 
 /// The imports of a crate's modules.
 pub(crate) fn of(program: &Crate) -> Graph {
     let mut graph = Graph::default();
     for scope in 0..program.scopes.len() {
-        let mut names = Names { program, scope, graph: &mut graph };
+        let mut names = Names { program, scope, graph: &mut graph, in_rules: false };
         program.scopes[scope].items.iter().for_each(|item| names.visit_item(item));
     }
     graph
@@ -24,6 +25,8 @@ struct Names<'a> {
     program: &'a Crate,
     scope: usize,
     graph: &'a mut Graph,
+    /// Within the text of a `macro_rules!`.
+    in_rules: bool,
 }
 
 impl Names<'_> {
@@ -72,8 +75,8 @@ impl Names<'_> {
                     let line = first.span().start().line;
                     let is_called = matches!(tokens.get(i + 1), Some(TokenTree::Group(_)));
                     let is_small = path.len() == 1 && path[0].starts_with(|c: char| c.is_lowercase());
-                    if is_field || is_variable || continues {
-                        // The name of a field or method, of a macro's variable, or the end of a path that starts elsewhere.
+                    if is_field || is_variable || continues || (self.in_rules && first != "crate") {
+                        // The name of a field or method, of a macro's variable, the end of a path that starts elsewhere, or known to a macro's callers.
                     } else if punct(i + 1, '!') && matches!(tokens.get(i + 2), Some(TokenTree::Group(_))) {
                         self.macro_name(&path, line);
                     } else if !is_small || is_called {
@@ -133,6 +136,12 @@ impl<'ast> Visit<'ast> for Names<'_> {
             self.path(&names, first.ident.span().start().line);
         }
         visit::visit_path(self, path);
+    }
+
+    fn visit_item_macro(&mut self, item: &'ast ItemMacro) {
+        self.in_rules = item.ident.is_some();
+        visit::visit_item_macro(self, item);
+        self.in_rules = false;
     }
 
     fn visit_macro(&mut self, call: &'ast Macro) {
