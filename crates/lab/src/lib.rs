@@ -105,3 +105,8 @@ pub use sweep::SafeRange;
 pub use task::Options;
 pub use test_bsdf::{Number, TestBsdf};
 pub use white::FurnaceMap;
+
+/// Runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
