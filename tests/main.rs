@@ -13,4 +13,5 @@ mod model_tables; // The tables of models in the docs say what the kernel declar
 mod normal_maps; // Normal maps in scene files: which way a bump points, what light is lost, which files are refused.
 mod pictures; // Threads, crops, plans, backends, scale and place never change a picture.
 mod scene_files; // Scene files, good and bad: what loads, what it becomes, and the very words of each refusal.
+mod structure; // The order of the crates, no import cycles, no file of two thoughts.
 mod support; // Shared: where data lies, small scenes, random numbers.

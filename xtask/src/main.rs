@@ -12,6 +12,7 @@ mod embree;
 mod fuzz;
 mod gonio;
 mod no_std;
+mod package;
 mod peers;
 mod rays;
 mod sources;
@@ -40,6 +41,8 @@ cargo xtask ratio                how much faster eight lanes are than one direct
 cargo xtask fuzz [--executions N] [--target NAME]
                                  N inputs for each parser, 1,000,000 unless told; what broke one stays in target/fuzz
 cargo xtask tables [--check]     write the kernel's generated tables, or exit 1 if they would differ
+cargo xtask package              build what would be published: each package alone, its documentation as docs.rs makes it, all with
+                                 the oldest compiler that is promised
 cargo xtask ci                   all that CI runs: .ci/run
 ";
 
@@ -61,6 +64,7 @@ fn main() -> ExitCode {
         ("rays", rest) => rays::run(rest),
         ("fuzz", rest) => fuzz::run(rest),
         ("tables", rest) => gonio::tables(rest),
+        ("package", []) => package::run(),
         ("ci", []) => ci::run(),
         ("help" | "-h" | "--help", []) => {
             print!("{USAGE}");

@@ -27,6 +27,7 @@
 #![warn(clippy::undocumented_unsafe_blocks)]
 
 mod device;
+mod error;
 mod filter;
 mod query;
 
@@ -36,29 +37,13 @@ use crate::ray::{Hit8, NO_HIT, Opacity, Ray8, RayKind};
 use crate::triangle::Intersect;
 use device::{Device, Owned};
 use embree4_sys::*;
+pub use error::EmbreeError;
 use filter::{Question, ask};
 use gonio_kernel::{F32x8, Mask8, Real, U32x8};
 use query::{Answer, Padded, Query, live};
 use std::panic::resume_unwind;
 use std::ptr::null_mut;
 use std::sync::Arc;
-use thiserror::Error;
-
-/// Why Embree cannot be used.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum EmbreeError {
-    /// The library that was found is too old or too new.
-    #[error("the library is Embree {}.{}.{}, but 4.2 or a later 4 is needed", .0 / 10_000, .0 / 100 % 100, .0 % 100)]
-    Version(isize),
-    /// Embree refused something.
-    #[error("Embree cannot {task}: {reason}")]
-    Refused {
-        /// What was asked for.
-        task: &'static str,
-        /// What it said.
-        reason: &'static str,
-    },
-}
 
 /// How much time Embree takes to build its tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

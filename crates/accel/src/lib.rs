@@ -58,3 +58,8 @@ pub trait Accel: Send + Sync {
     /// Dead lanes are not blocked.
     fn occluded(&self, kind: RayKind, rays: &[Ray8], filter: Option<&dyn Opacity>, blocked: &mut [Mask8]);
 }
+
+/// Runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

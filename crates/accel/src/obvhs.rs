@@ -1,12 +1,12 @@
 //! The tree backend: eight-wide trees, walked in the way that suits the rays.
 //!
-//! - [`tree`] is the tree: nodes of eight boxes side by side over blocks of eight triangles side by side, so that a ray, or a whole
-//!   tile of rays, is tested against eight of them at once.
-//! - It is made of a binary tree, from the top down by [`sah`] or by the crate `obvhs` ([`bridge`]), which [`collapse`] makes wide in
+//! - [`tree`] is the tree of [`cell`]s: nodes of eight boxes side by side over blocks of eight triangles side by side, so that a ray,
+//!   or a whole tile of rays, is tested against eight of them at once.
+//! - It is made ([`growth`]) of a binary tree, from the top down by [`sah`] or by the crate `obvhs` ([`bridge`]), which [`collapse`] makes wide in
 //!   the cheapest way; [`order`] says what a ray that looks for any hit visits first, and [`check`] whether all of it is sound.
 //! - Rays that have nothing in common walk alone, many at a time ([`flight`]); rays of a camera walk as tiles ([`tile`]).
 //!   Those that look for any hit first try the triangles that blocked the last ones ([`occluders`]).
-//! - A mesh that is placed many times may keep one tree, in its own coordinates ([`placed`]).
+//! - A mesh that is placed many times may keep one tree, in its own coordinates ([`shared`], [`placed`]).
 //! - So few triangles that a tree does not pay are kept in a list ([`few`]).
 //!
 //! None of this changes a result: all share the test of [`crate::triangle`], whose hits do not depend on the order of visits. The
@@ -14,31 +14,39 @@
 
 mod boxes;
 mod bridge;
+mod cell;
 mod check;
 mod collapse;
 mod few;
 mod flight;
+mod growth;
 mod occluders;
+mod odds;
+mod options;
 mod order;
 mod pages;
 mod placed;
 mod sah;
+mod shared;
 mod stack;
 mod tile;
 mod tree;
 
 use crate::Accel;
 use crate::brute::scalar_hit;
-use crate::geometry::{Geometry, Instance, TriangleId};
+use crate::geometry::{Geometry, TriangleId};
 use crate::ray::{Hit, Hit8, NO_HIT, Opacity, Ray8, RayKind};
 use crate::triangle::{Beam, Crossing, Intersect, barycentric};
 pub use check::TreeError;
+pub use options::{ObvhsOptions, ObvhsPreset, Sharing};
+
+use cell::Cell;
 use few::Few;
 use flight::{Quest, Walk};
 use gonio_kernel::{F32x8, Mask8};
 use occluders::Occluders;
-use placed::Way;
-use tree::{Cell, Tree};
+use stack::for_each_lane;
+use tree::Tree;
 
 /// A tree of eight-wide nodes over the triangles of a geometry, or a list of a few.
 #[derive(Clone, Debug)]
@@ -48,69 +56,6 @@ pub struct Obvhs(Structure);
 enum Structure {
     Tree(Tree, Intersect),
     List(Few),
-}
-
-/// How much time is spent to build a tree.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ObvhsPreset {
-    /// As little as possible: the tree of `obvhs`' PLOC builder.
-    Fast,
-    /// From the top down, by the surface area heuristic.
-    #[default]
-    Medium,
-    /// The same, then improved by `obvhs`' reinsertion: several times the time.
-    High,
-}
-
-/// Which instances share what is kept of their mesh, instead of being laid out in the world. No hit depends on it. A shared tree saves
-/// memory and time to build; rays take about twice as long, because what they meet is moved to the world whenever they do.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Sharing {
-    /// Those of meshes that are placed more than once, if all instances together have more than four million triangles.
-    #[default]
-    Large,
-    /// None.
-    Never,
-    /// All, as far as their maps can be inverted.
-    Always,
-}
-
-impl Sharing {
-    /// More triangles than that are not laid out if they need not be: their tree would take a quarter of a gigabyte.
-    pub const LARGE: usize = 1 << 22;
-
-    /// Whether the instances of a mesh share it, if all instances together have so many triangles, and the mesh so many
-    /// instances.
-    pub fn shares(self, triangles: usize, instances: usize) -> bool {
-        match self {
-            Self::Large => triangles > Self::LARGE && instances > 1,
-            Self::Never => false,
-            Self::Always => true,
-        }
-    }
-
-    /// For each instance that shares a tree, the way to its mesh.
-    fn ways(self, geometry: &Geometry) -> Vec<Option<Way>> {
-        let mut uses = vec![0; geometry.meshes().len()];
-        geometry.instances().iter().for_each(|instance| uses[instance.mesh as usize] += 1);
-        let way = |instance: &Instance| {
-            let mesh = instance.mesh as usize;
-            let shares = self.shares(geometry.triangle_count(), uses[mesh]);
-            (shares && !geometry.meshes()[mesh].triangles.is_empty()).then(|| Way::to(instance)).flatten()
-        };
-        geometry.instances().iter().map(way).collect()
-    }
-}
-
-/// How a tree is built and rays are tested.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ObvhsOptions {
-    /// How strictly rays are tested. A list of few triangles keeps the watertight test, which costs it nothing.
-    pub intersect: Intersect,
-    /// How much time is spent to build.
-    pub preset: ObvhsPreset,
-    /// Which instances share a tree.
-    pub sharing: Sharing,
 }
 
 impl Obvhs {
@@ -176,15 +121,6 @@ impl Accel for Obvhs {
             Structure::Tree(tree, Intersect::Robust) => tree.occluded::<false>(rays, filter, blocked),
             Structure::Tree(tree, Intersect::Fast) => tree.occluded::<true>(rays, filter, blocked),
         }
-    }
-}
-
-#[inline(always)]
-fn for_each_lane(mask: Mask8, mut f: impl FnMut(usize)) {
-    let mut bits = mask.to_bits();
-    while bits != 0 {
-        f(bits.trailing_zeros() as usize);
-        bits &= bits - 1;
     }
 }
 

@@ -35,3 +35,8 @@ pub mod whole_file;
 pub use error::{ImageError, SceneError};
 pub use picture::read_picture;
 pub use scene::{load, load_with, material_from_toml_str, scene_from_toml_str};
+
+/// Runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

@@ -31,9 +31,11 @@
 //! **Anisotropy.** For $\alpha_x \ne \alpha_y$ there is no more than an effective width, [`effective_alpha`], and what it leaves.
 
 pub mod albedo;
+mod coefficients;
 mod tables;
 
 pub use albedo::AlbedoCurve;
+pub use coefficients::{MEAN, Table, V, W};
 pub use tables::{ALBEDO, TABLE};
 
 use crate::math::{exp, exp_m1, ln_1p, sin_cos_turns};
@@ -50,22 +52,6 @@ crate::choice! {
         /// It makes the lobe brighter: [`turquin`]. Not reciprocal.
         Turquin = "turquin",
     }
-}
-
-/// How many Chebyshev polynomials of v.
-pub const V: usize = 10;
-/// How many Chebyshev polynomials of w.
-pub const W: usize = 8;
-/// How many Chebyshev polynomials of √α the mean takes.
-pub const MEAN: usize = 14;
-
-/// Coefficients of the approximation of 1 − E and 1 − E_avg.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Table {
-    /// ln P: of T_i(2v − 1) T_j(2w − 1).
-    pub missing: [[f64; W]; V],
-    /// Q: of T_k(2√α − 1).
-    pub missing_avg: [f64; MEAN],
 }
 
 impl Table {

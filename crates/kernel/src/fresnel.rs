@@ -238,6 +238,13 @@ crate::one_of! {
     or (metal: Metal, " A metal whose index is known.") => metal.into();
 }
 
+impl<R: Real> From<Metal> for Fresnel<R> {
+    fn from(metal: Metal) -> Self {
+        let [eta, k] = metal.index();
+        Self::Conductor { eta: eta.map(R::lit), k: k.map(R::lit) }
+    }
+}
+
 impl<R: Real> Fresnel<R> {
     /// The reflectance of each channel at cos_o in [0, 1].
     #[inline(always)]

@@ -4,9 +4,10 @@
 //! all ones or all zeros per lane, so that `and`, `or` and blends agree on what true means. `wide`'s own `min` and `max`
 //! cost three instructions and hide NaNs; ours are the single instruction, with the rule of [`Real::min`].
 
+mod vectors;
+
 use crate::real::{LARGEST_INT, Mask, Precision, Real, Recordable};
 use crate::table::Table;
-use crate::vec3::Vec3;
 use core::ops::{
     Add, AddAssign, BitAnd, BitOr, BitXor, Div, DivAssign, Mul, MulAssign, Neg, Not, Shl, Shr, Sub, SubAssign,
 };
@@ -205,29 +206,6 @@ impl U32x8 {
     #[inline(always)]
     pub fn select(mask: Mask8, yes: Self, no: Self) -> Self {
         F32x8::select(mask, yes.as_real(), no.as_real()).to_bits()
-    }
-}
-
-impl Vec3<F32x8> {
-    /// The same vector in every lane.
-    #[inline(always)]
-    pub fn broadcast(v: Vec3<f32>) -> Self {
-        Self::new(F32x8::splat(v.x), F32x8::splat(v.y), F32x8::splat(v.z))
-    }
-    /// Lane `lane` modulo 8.
-    #[inline(always)]
-    pub fn lane(&self, lane: usize) -> Vec3<f32> {
-        Vec3::new(self.x.lane(lane), self.y.lane(lane), self.z.lane(lane))
-    }
-    /// Lane `lane` modulo 8, in every lane.
-    #[inline(always)]
-    pub fn splat_lane(&self, lane: usize) -> Self {
-        Self::broadcast(self.lane(lane))
-    }
-    /// Lane *i* is `f(i)`; `f` is asked once per component and lane.
-    #[inline(always)]
-    pub fn from_lanes(f: impl Fn(usize) -> Vec3<f32>) -> Self {
-        Self::new(F32x8::from_fn(|i| f(i).x), F32x8::from_fn(|i| f(i).y), F32x8::from_fn(|i| f(i).z))
     }
 }
 

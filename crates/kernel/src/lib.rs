@@ -57,6 +57,7 @@ pub mod model;
 mod operators;
 mod real;
 mod rgb;
+mod roughness;
 pub mod surface;
 pub mod table;
 #[cfg(test)]
@@ -75,7 +76,8 @@ pub use model::{Model, Parameters};
 pub use real::Recordable;
 pub use real::{Mask, Precision, Real};
 pub use rgb::Rgb;
-pub use surface::{Alpha, Roughness, Surface};
+pub use roughness::{Alpha, Roughness};
+pub use surface::Surface;
 pub use table::Table;
 pub use vec3::Vec3;
 

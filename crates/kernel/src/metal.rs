@@ -4,8 +4,6 @@
 //! gold (Palik 1985) and aluminium. Three wavelengths instead of an integral over the spectrum: that is what an RGB renderer
 //! can say about a metal, and it is good to a few per cent of the colour.
 
-use crate::fresnel::Fresnel;
-use crate::real::Real;
 use crate::rgb::Rgb;
 
 crate::choice! {
@@ -34,16 +32,10 @@ impl Metal {
     }
 }
 
-impl<R: Real> From<Metal> for Fresnel<R> {
-    fn from(metal: Metal) -> Self {
-        let [eta, k] = metal.index();
-        Self::Conductor { eta: eta.map(R::lit), k: k.map(R::lit) }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fresnel::Fresnel;
     use crate::model::Choice;
 
     #[test]

@@ -8,6 +8,8 @@
 //! A surface of one lobe without a coat costs what the lobe costs. One of several prepares its lobes anew in each call: arrays of
 //! prepared data would have to be filled and moved, which costs more (measured: twelve slots, two lobes, eight lanes: 187 → 80 ns).
 
+pub use crate::roughness::{Alpha, Roughness};
+
 use crate::energy::AlbedoCurve;
 use crate::lobe::{
     AnyLobe, Coat, Event, Layering, Lobe, Properties, Sample, Transport, Value, Weighted, either_scale, rest_of,
@@ -17,34 +19,6 @@ use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
 use crate::vec3::Vec3;
 use core::fmt;
-
-/// The user's roughness in [0, 1]: perceptually about linear, never the alpha of a distribution.
-///
-/// ```
-/// use gonio_kernel::{Alpha, Roughness, microfacet::Ggx};
-/// assert_eq!(Alpha::from(Roughness(0.5_f32)), Alpha(0.25));
-/// assert_eq!(Ggx::isotropic(Roughness(0.5_f32)), Ggx::isotropic(0.25));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Roughness<R>(pub R);
-
-/// The alpha of a distribution of microfacet normals, in [1e-8, 1].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Alpha<R>(pub R);
-
-impl<R: Real> From<Roughness<R>> for Alpha<R> {
-    /// alpha = roughness²: the rule of Disney 2012 and OpenPBR.
-    #[inline(always)]
-    fn from(roughness: Roughness<R>) -> Self {
-        Self(roughness.0 * roughness.0)
-    }
-}
-impl<R: Real> From<R> for Alpha<R> {
-    #[inline(always)]
-    fn from(alpha: R) -> Self {
-        Self(alpha)
-    }
-}
 
 /// A lobe does not fit: the surface would not be what was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -15,9 +15,10 @@ pub use certificate::Certificate;
 
 use crate::finding::Finding;
 use crate::lanes;
-use crate::run::{Options, Task, execute, tasks_of};
+use crate::run::{execute, tasks_of};
 use crate::speed::{self, Speed};
 use crate::sweep::{self, SafeRange};
+use crate::task::{Options, Task};
 use crate::test_bsdf::{DynBsdf, TestBsdf};
 use crate::totality;
 use crate::under_test::UnderTest;

@@ -6,12 +6,12 @@
 
 use crate::catalog::{Row, rows};
 use crate::finding::{Finding, Run};
+use crate::mutations;
 use crate::probe::{BsdfValue, Dir, Draw, Kind, Probe, demote};
 use crate::random::direction;
-use crate::run::Task;
 use crate::statistics::{FAULT_MASS, FAULT_SIZE, samples_for};
+use crate::task::{Task, planted};
 use crate::under_test::{UnderTest, View};
-use crate::{Effort, mutations};
 use crate::{chi2, consistency, delta, furnace, normalisation, precision, reciprocity, totality, weight};
 use crate::{layering, walk};
 use gonio_kernel::lobe::Layering;
@@ -338,22 +338,4 @@ fn walk_faults() -> [(&'static str, walk::Model); 5] {
             },
         ),
     ]
-}
-
-/// A task that fails unless the measurement fails.
-pub(crate) fn planted(
-    name: &str,
-    instrument: &str,
-    measure: impl Fn(&Run) -> Finding + Send + Sync + 'static,
-) -> Task<'static> {
-    Task::new("planted-faults", format!("{name} → {instrument}"), 0, move |run| {
-        let found = measure(&Run { effort: Effort::Quick, ..*run });
-        let mut finding = Finding::at_most(0.0, "faults not caught ≤");
-        if found.failed() {
-            finding.note(format!("caught: {}", found.detail()));
-        } else {
-            finding.raise(1.0, || format!("NOT caught: {}", found.detail()));
-        }
-        finding
-    })
 }

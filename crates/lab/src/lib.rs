@@ -89,6 +89,7 @@ mod speed;
 mod statistics;
 mod sweep;
 pub mod tables;
+mod task;
 mod test_bsdf;
 mod totality;
 mod under_test;
@@ -100,9 +101,15 @@ mod white;
 pub use certify::{Certificate, certify, certify_single};
 pub use effort::Effort;
 pub use gonio_report::{Check, Outcome};
-pub use run::{Options, instruments, validate_kernel};
+pub use run::{instruments, validate_kernel};
 pub use speed::{Call, Count, Speed, exercise};
 pub use statistics::sidak;
 pub use sweep::SafeRange;
+pub use task::Options;
 pub use test_bsdf::{Number, TestBsdf};
 pub use white::FurnaceMap;
+
+/// Runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

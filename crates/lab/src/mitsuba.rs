@@ -1,6 +1,6 @@
 //! Mitsuba's answers: BSDFs and Fresnel's equations at single points, computed by another renderer.
 //!
-//! `tests/reference/bsdfs.json` was written by `bsdfs.py` beside it: Mitsuba 3.9.1, single precision, a few hundred
+//! `reference/bsdfs.json` was written by `bsdfs.py` beside it: Mitsuba 3.9.1, single precision, a few hundred
 //! configurations of each model. Where the environment variable `GONIO_MITSUBA` names another file of that script, that one is
 //! read, and must hold 10⁵ of each.
 //!
@@ -30,7 +30,7 @@ use gonio_kernel::microfacet::{Beckmann, Distribution, Ggx, Masking, Microfacets
 use gonio_kernel::{Lobe, Parameters, Rgb, Transport, Vec3};
 use std::sync::OnceLock;
 
-const REFERENCE: &str = include_str!("../../../tests/reference/bsdfs.json");
+const REFERENCE: &str = include_str!("../reference/bsdfs.json");
 /// Names a larger file.
 const VARIABLE: &str = "GONIO_MITSUBA";
 

@@ -1,13 +1,12 @@
 //! Mutation tests of building blocks: textbook formulas misread, frames, lanes, sines, warps, the guard. Each must be caught.
 
 use crate::catalog::{Variant, variants};
-use crate::faults::planted;
 use crate::finding::{Finding, Run};
 use crate::frames::{self, kernel};
 use crate::mitsuba::{self, Model};
 use crate::normal_map::{self, Rules};
 use crate::probe::{BsdfValue, Dir, Probe};
-use crate::run::Task;
+use crate::task::{Task, planted};
 use crate::test_bsdf::{Answer, DynBsdf, Number, Question};
 use crate::{elementary, lanes, reference, totality, warps};
 use gonio_kernel::fresnel::Fresnel;

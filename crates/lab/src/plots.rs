@@ -7,13 +7,12 @@
 use crate::catalog::variants;
 use crate::chi2::observed_and_expected;
 use crate::finding::Run;
-use crate::probe::{Dir, Kind, Probe};
+use crate::probe::Probe;
 use crate::random::{direction, seed_for};
-use crate::run::Options;
+use crate::task::Options;
 use crate::test_bsdf::{DynBsdf, TestBsdf};
 use crate::under_test::UnderTest;
-use crate::white::{self, Varied};
-use gonio_kernel::Rgb;
+use crate::white::{self, Varied, mean_weight};
 use gonio_report::{Axis, Colours, Figure, Histogram, Map, Plot};
 
 /// The plots of one lobe: its white twin's albedo, its own reciprocity and χ².
@@ -84,24 +83,6 @@ fn albedo(name: &str, bsdf: &dyn DynBsdf, is_white: bool) -> Plot {
         caption: format!("{light}, over angle and {}.", y.name),
         figure: Figure::Map(Map { x: COSINE_OUT, y, columns: COLUMNS, values, colours: Colours::Linear(0.0, 1.0) }),
     }
-}
-
-/// The mean weight of samples on a grid of 32² random numbers, as a luminance.
-pub(crate) fn mean_weight(probe: &dyn Probe, wo: Dir) -> f64 {
-    const GRID: usize = 32;
-    const GOLDEN: f64 = 0.618_033_988_749_894_9; // its multiples fill [0, 1) evenly
-    let at = |i: usize| (i as f64 + 0.5) / GRID as f64;
-    let u: Vec<[f64; 3]> =
-        (0..GRID * GRID).map(|i| [(i as f64 * GOLDEN).fract(), at(i % GRID), at(i / GRID)]).collect();
-    let mut draws = Vec::with_capacity(u.len());
-    probe.sample_all(wo, &u, &mut draws);
-    let weight = |wi, kind| match kind {
-        Kind::Failed => [0.0; 3],
-        Kind::Continuous => probe.eval(wo, wi).weight(),
-        Kind::Delta(value, _) => value.weight(),
-    };
-    let luminance = |[r, g, b]: [f64; 3]| Rgb::new(r, g, b).luminance();
-    draws.iter().map(|draw| luminance(weight(draw.wi, draw.kind))).sum::<f64>() / u.len() as f64
 }
 
 /// What is not all delta has both; what light passes through only the latter.

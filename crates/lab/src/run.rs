@@ -5,11 +5,10 @@
 //! by its name, and results are handed on in the order of the list, so neither threads nor order change anything.
 
 use crate::catalog::{Row, rows, variants};
-use crate::effort::Effort;
 use crate::faults;
 use crate::finding::{Finding, Run};
-use crate::random::seed_for;
-use crate::statistics::{FAMILY_SIGNIFICANCE, sidak};
+use crate::statistics::sidak;
+use crate::task::{Options, Task};
 use crate::under_test::{UnderTest, View};
 use crate::{
     chi2, consistency, delta, elementary, frames, furnace, lanes, mitsuba, normal_map, normalisation, precision,
@@ -22,32 +21,6 @@ use gonio_kernel::{Properties, Surface};
 use gonio_report::Check;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
-use std::time::Instant;
-
-/// What to run, and how thoroughly.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// How many rows and samples.
-    pub effort: Effort,
-    /// Where all random numbers of a run come from. A correct kernel passes with any seed.
-    pub seed: u64,
-    /// Only checks whose instrument has this name, or whose subject contains this text.
-    pub only: Option<String>,
-    /// The probability with which all statistical tests of the run together may fail a correct kernel.
-    pub significance: f64,
-}
-
-impl Options {
-    /// Everything, at the given effort, with the usual seed.
-    pub fn new(effort: Effort) -> Self {
-        Self { effort, seed: 1, only: None, significance: FAMILY_SIGNIFICANCE }
-    }
-
-    /// Whether a check is asked for.
-    pub fn want(&self, instrument: &str, subject: &str) -> bool {
-        self.only.as_ref().is_none_or(|only| only == instrument || subject.contains(only.as_str()))
-    }
-}
 
 /// The instruments: name, and what it proves in one sentence.
 pub fn instruments() -> &'static [(&'static str, &'static str)] {
@@ -109,33 +82,6 @@ pub fn validate_kernel(options: &Options, sink: &mut dyn FnMut(Check)) {
     }
     tasks.extend(faults::tasks());
     execute(tasks, options, sink);
-}
-
-/// One row of the report, not yet measured.
-pub(crate) struct Task<'a> {
-    instrument: &'static str,
-    subject: String,
-    /// How many p-values it judges at the level of a single test.
-    tests: usize,
-    measure: Box<dyn Fn(&Run) -> Finding + Send + Sync + 'a>,
-}
-
-impl<'a> Task<'a> {
-    /// A task.
-    pub(crate) fn new(
-        instrument: &'static str,
-        subject: impl Into<String>,
-        tests: usize,
-        measure: impl Fn(&Run) -> Finding + Send + Sync + 'a,
-    ) -> Self {
-        Self { instrument, subject: subject.into(), tests, measure: Box::new(measure) }
-    }
-    fn run(&self, options: &Options, level: f64) -> Check {
-        let start = Instant::now();
-        let seed = seed_for(options.seed, &format!("{} {}", self.instrument, self.subject));
-        let finding = (self.measure)(&Run { effort: options.effort, seed, level });
-        finding.into_check(self.instrument, self.subject.clone(), start.elapsed().as_secs_f64())
-    }
 }
 
 /// Tests of the integral instruments: one p-value per view.
@@ -240,7 +186,7 @@ fn kernel_tasks() -> Vec<Task<'static>> {
 
 /// Runs the wanted tasks on all threads and hands on the checks in order.
 pub(crate) fn execute(tasks: Vec<Task>, options: &Options, sink: &mut dyn FnMut(Check)) {
-    let tasks: Vec<Task> = tasks.into_iter().filter(|task| options.want(task.instrument, &task.subject)).collect();
+    let tasks: Vec<Task> = tasks.into_iter().filter(|task| task.wanted(options)).collect();
     let level = sidak(options.significance, tasks.iter().map(|task| task.tests).sum());
     let threads = std::thread::available_parallelism().map_or(1, usize::from).min(tasks.len().max(1));
     let next = AtomicUsize::new(0);

@@ -4,12 +4,14 @@
 //! function of a mathematics library, one thread. [`generate`] returns the file; `gonio tables` writes or compares it.
 
 mod albedo;
+mod decimals;
 mod fit;
 mod ggx;
 
 pub(crate) use albedo::reflected;
 pub(crate) use ggx::missing;
 
+use decimals::{number, rounded};
 use gonio_kernel::energy::{MEAN, Table, V, W};
 use gonio_kernel::math::{ln, ln_1p};
 use std::fmt::Write;
@@ -41,15 +43,6 @@ pub fn generate() -> String {
     text.push_str("    ],\n};\n");
     text.push_str(&albedo::text(&albedo::make()));
     text
-}
-
-/// A coefficient to eight decimals: far finer than the fit, and coarse enough that no machine's last bit shows.
-fn number(x: f64) -> String {
-    format!("{x:.8}")
-}
-
-fn rounded(x: f64) -> f64 {
-    number(x).parse().unwrap_or(x)
 }
 
 /// Fits both parts.

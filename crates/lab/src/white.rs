@@ -6,13 +6,12 @@
 
 use crate::cells::Cells;
 use crate::finding::{Finding, Run};
-use crate::plots::mean_weight;
 use crate::probe::{Dir, Kind, Probe};
 use crate::random::{Random, direction, seed_for};
 use crate::test_bsdf::{DynBsdf, Number};
 use crate::under_test::Claims;
-use gonio_kernel::Properties;
 use gonio_kernel::model::Role;
+use gonio_kernel::{Properties, Rgb};
 use gonio_report::Axis;
 use serde::Serialize;
 
@@ -179,4 +178,22 @@ fn integral(probe: &dyn Probe, wo: Dir, run: &Run) -> (f64, f64) {
         }
     }
     (total.value[1] + delta.iter().map(|d| d.1).sum::<f64>(), total.error)
+}
+
+/// The mean weight of samples on a grid of 32² random numbers, as a luminance.
+pub(crate) fn mean_weight(probe: &dyn Probe, wo: Dir) -> f64 {
+    const GRID: usize = 32;
+    const GOLDEN: f64 = 0.618_033_988_749_894_9; // its multiples fill [0, 1) evenly
+    let at = |i: usize| (i as f64 + 0.5) / GRID as f64;
+    let u: Vec<[f64; 3]> =
+        (0..GRID * GRID).map(|i| [(i as f64 * GOLDEN).fract(), at(i % GRID), at(i / GRID)]).collect();
+    let mut draws = Vec::with_capacity(u.len());
+    probe.sample_all(wo, &u, &mut draws);
+    let weight = |wi, kind| match kind {
+        Kind::Failed => [0.0; 3],
+        Kind::Continuous => probe.eval(wo, wi).weight(),
+        Kind::Delta(value, _) => value.weight(),
+    };
+    let luminance = |[r, g, b]: [f64; 3]| Rgb::new(r, g, b).luminance();
+    draws.iter().map(|draw| luminance(weight(draw.wi, draw.kind))).sum::<f64>() / u.len() as f64
 }

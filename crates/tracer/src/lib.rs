@@ -49,7 +49,8 @@
 //! ```
 #![forbid(unsafe_code)]
 
-#[cfg(all(target_arch = "x86_64", not(all(target_feature = "avx2", target_feature = "fma"))))]
+// docs.rs sets no flags of ours: documentation is no program.
+#[cfg(all(target_arch = "x86_64", not(all(target_feature = "avx2", target_feature = "fma")), not(docsrs)))]
 compile_error!(
     "gonio-tracer needs AVX2 and FMA on x86-64: build inside the repository, whose .cargo/config.toml sets them, \
      or with RUSTFLAGS=\"-C target-cpu=x86-64-v3\""
@@ -94,3 +95,8 @@ pub use prepared::Prepared;
 pub use render::{Pass, Progress, RenderSettings, render};
 pub use stats::{LargeSample, RenderStats};
 pub use world::World;
+
+/// Runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

@@ -21,3 +21,8 @@ mod validation;
 
 pub use error::Error;
 pub use validation::{Found, instruments, validate};
+
+/// Runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

@@ -7,10 +7,10 @@ use std::path::Path;
 /// Name and text of a scene's files; the scene file comes first.
 pub(crate) type Files = &'static [(&'static str, &'static str)];
 
-/// A file of the repository's `scenes/`.
+/// A file of the repository's `scenes/`, to which the link of that name leads: so it is in the package too.
 macro_rules! shipped {
     ($name:literal) => {
-        ($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/", $name)))
+        ($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/", $name)))
     };
 }
 pub(crate) use shipped;

@@ -1,6 +1,6 @@
 //! Objects of Embree: references that are given back, a device, and what it holds of a mesh.
 
-use super::EmbreeError;
+use super::error::EmbreeError;
 use crate::geometry::{Instance, Mesh};
 use embree4_sys::*;
 use std::ffi::CStr;

@@ -1,8 +1,9 @@
 //! Whether a tree is one: everything that a traversal takes for granted.
 
 use super::boxes::Box3;
+use super::cell::{Cell, Child, WIDTH};
 use super::stack::spread;
-use super::tree::{Cell, Child, Tree, WIDTH};
+use super::tree::Tree;
 use gonio_kernel::Vec3;
 use thiserror::Error;
 

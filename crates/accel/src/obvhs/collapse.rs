@@ -7,8 +7,9 @@
 //! there is proportional to.
 
 use super::boxes::Box3;
+use super::cell::{Child, WIDTH};
 use super::sah::Binary;
-use super::tree::{Child, Tree, WIDTH};
+use super::tree::Tree;
 
 /// What a visit of a node costs, and that of a block of triangles.
 pub(super) const NODE: f32 = 1.0;

@@ -14,9 +14,10 @@
 //! Only a tree with entrances ([`super::placed`]) has rays that are inside of one: what they were outside is kept beside them, and the
 //! way out lies on their stack. Other trees are walked by code that knows nothing of it.
 
+use super::cell::{Cell, Child, Facing, Slots};
 use super::placed::candidates;
 use super::stack::Stack;
-use super::tree::{Cell, Child, Facing, Slots, Tree, View};
+use super::tree::{Tree, View};
 use crate::ray::{NO_HIT, Ray8};
 use crate::triangle::{Beam, Crossing, intersect, intersect_fast};
 use gonio_kernel::{F32x8, Mask, Mask8, Real, Vec3};

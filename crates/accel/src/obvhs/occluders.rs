@@ -6,8 +6,8 @@
 //! ahead; a new one takes the last place. Where none is of use, ever fewer packets are tested. The answer is that of the tree,
 //! because the test is.
 
+use super::cell::Cell;
 use super::flight::crossing;
-use super::tree::Cell;
 use crate::ray::Ray8;
 use crate::triangle::Beam;
 use gonio_kernel::{F32x8, Mask, Mask8, Vec3};

@@ -6,18 +6,11 @@
 //! entered with the ratio of the areas, as if independent (Ize & Hansen 2011, "RTSAH Traversal Order for Occlusion Rays").
 
 use super::boxes::Box3;
+use super::cell::{Cell, Child};
 use super::collapse::{BLOCK, NODE};
-use super::tree::{Cell, Child, Tree};
+use super::odds::Odds;
+use super::tree::Tree;
 use gonio_kernel::{F32x8, Real};
-
-/// What a search below a node or block comes to, given that the ray enters its box.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Odds {
-    /// The chance of a hit.
-    hit: f32,
-    /// The expected cost.
-    cost: f32,
-}
 
 /// Puts the children of nodes in order, the best last. Children come after their parents in `nodes`, or have their odds.
 pub(super) fn settle(tree: &mut Tree, nodes: &[Child], odds: &mut Vec<Odds>) {

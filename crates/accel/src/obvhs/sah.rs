@@ -9,7 +9,7 @@
 //! before it is built. Halves are built at the same time and the result is the same for any number of threads.
 
 use super::boxes::{Box3, Ref};
-use super::tree::WIDTH;
+use super::cell::WIDTH;
 use glam::Vec4;
 
 /// Bins along each axis.

@@ -3,7 +3,7 @@
 //! An order of a node's eight slots is a word, three bits for each. The slots that count are moved together by a permutation from
 //! a table, and all eight are stored at once: those that do not count are overwritten by the next.
 
-use gonio_kernel::{F32x8, U32x8};
+use gonio_kernel::{F32x8, Mask8, U32x8};
 
 /// Subtrees still to be visited, and where rays enter them.
 pub(super) struct Stack {
@@ -60,3 +60,13 @@ const TOGETHER: [u32; 256] = {
     }
     table
 };
+
+/// Calls `f` with each lane of a mask.
+#[inline(always)]
+pub(super) fn for_each_lane(mask: Mask8, mut f: impl FnMut(usize)) {
+    let mut bits = mask.to_bits();
+    while bits != 0 {
+        f(bits.trailing_zeros() as usize);
+        bits &= bits - 1;
+    }
+}

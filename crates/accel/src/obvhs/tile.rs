@@ -11,10 +11,10 @@
 //! at many blocks which few of them enter: far away, or in a small picture, neighbours have nothing in common. After such a
 //! tile ever fewer are tried. Every test of a triangle is the same, so results are too.
 
+use super::cell::{Cell, Child, Facing};
 use super::flight::sound;
-use super::for_each_lane;
-use super::stack::Stack;
-use super::tree::{Cell, Child, Facing, Tree, View};
+use super::stack::{Stack, for_each_lane};
+use super::tree::{Tree, View};
 use crate::geometry::{Order, TriangleId};
 use crate::ray::{Hit8, Ray8};
 use crate::triangle::{Beam, Crossing, Facet, barycentric, intersect};

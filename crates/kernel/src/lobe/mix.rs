@@ -4,22 +4,12 @@
 //! exactly 0. The density is p·pdf_a + (1 − p)·pdf_b over the continuous parts, not renormalised by the probability of delta events;
 //! a delta event has the probability of its part times its own.
 
+use super::combined::Mix;
 use super::{Lobe, Properties, Sample, Transport, Value};
 use crate::model::{Entry, Parameter, Parameters, Source};
 use crate::real::{Mask, Real};
 use crate::rgb::Rgb;
 use crate::vec3::Vec3;
-
-/// Two lobes side by side.
-///
-/// ```
-/// use gonio_kernel::{Closure, Lobe, Rgb, Vec3, lobe::{Lambert, Mirror}};
-/// let chalk = Lambert::new(Rgb::splat(0.5_f32)).plus(Mirror::new(Rgb::splat(0.5)));
-/// let sample = Closure::new(chalk, Vec3::unit_z()).sample([0.9, 0.5, 0.5]);
-/// assert!(sample.event.is_delta && sample.weight.g == 1.0);
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mix<A, B>(pub A, pub B);
 
 /// What a [`Mix`] prepares.
 #[derive(Clone, Copy, Debug)]

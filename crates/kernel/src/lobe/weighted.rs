@@ -1,26 +1,12 @@
 //! `Weighted`: a lobe times a colour.
 
+use super::combined::Weighted;
 use super::{Lobe, Properties, Sample, Transport, Value};
 use crate::energy::AlbedoCurve;
 use crate::model::{Entry, Parameter, Parameters, Source, WEIGHT};
 use crate::real::Real;
 use crate::rgb::Rgb;
 use crate::vec3::Vec3;
-
-/// A lobe times a colour in \[0, 1\].
-///
-/// ```
-/// use gonio_kernel::{Lobe, Rgb, lobe::Lambert};
-/// let half_red = Lambert::new(Rgb::splat(0.8_f32)).times(Rgb::new(0.5, 0.0, 0.0));
-/// assert!(half_red.domain());
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Weighted<R, L> {
-    /// The factor.
-    pub weight: Rgb<R>,
-    /// The lobe.
-    pub lobe: L,
-}
 
 impl<R: Real, L: Lobe<R>> Lobe<R> for Weighted<R, L> {
     type Prepared = L::Prepared;

@@ -26,10 +26,10 @@
 //! beyond that: two divisions, one root, two logarithms, two inverse error functions. Newton's method (two steps of Halley's from a
 //! guess within 0.07) took 2.7 times as long in eight lanes.
 
-use super::lengthened;
+use super::visible::lengthened;
 use crate::math::{erf_inv_over, erf_inv_within, erfc_and_exp, exp_negative, flushed_square, ln_normal};
 use crate::real::Real;
-use crate::surface::Alpha;
+use crate::roughness::Alpha;
 use crate::vec3::Vec3;
 use core::f64::consts::{FRAC_1_PI, FRAC_2_SQRT_PI};
 

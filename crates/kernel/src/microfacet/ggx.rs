@@ -15,10 +15,10 @@
 //! Nothing is formed by subtraction: D comes from the unnormalised half vector, which stays exact near the mirror
 //! direction. Cost: D one division, s one root, its reach two divisions and a root, a visible normal one root.
 
-use super::{Reach, lengthened};
+use super::visible::{Reach, lengthened};
 use crate::math::sin_cos_turns;
 use crate::real::Real;
-use crate::surface::Alpha;
+use crate::roughness::Alpha;
 use crate::vec3::Vec3;
 
 /// A GGX surface of widths alpha_x and alpha_y, each in [1e-8, 1].

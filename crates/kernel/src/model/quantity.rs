@@ -86,6 +86,10 @@ impl Quantity {
     }
 }
 
+/// The smallest width of microfacets: below, even `f64` directions are coarser than the lobe, and the surface is a mirror.
+/// (In `f32` that is so below 1e-4: the lobe stays finite and its weights right, but its shape is that of the lattice.)
+pub const ALPHA_MIN: f64 = 1e-8;
+
 /// Part of the light, in \[0, 1\].
 pub const REFLECTANCE: Quantity = Quantity::new(Role::Reflectance, 0.0, 1.0).white(1.0);
 /// A factor on a lobe, in \[0, 1\].
@@ -95,8 +99,7 @@ pub const ROUGHNESS: Quantity = Quantity::new(Role::Roughness, 0.0, 1.0);
 /// A user's roughness of microfacets, whose square is alpha, in \[1e-4, 1\].
 pub const MICROFACET_ROUGHNESS: Quantity = Quantity::new(Role::Roughness, 1e-4, 1.0);
 /// Alpha of a distribution of microfacet normals, in \[1e-8, 1\].
-pub const ALPHA: Quantity =
-    Quantity::new(Role::Alpha, crate::microfacet::ALPHA_MIN, 1.0).log_from(1e-8).shown(1e-4, 1.0, 0.2);
+pub const ALPHA: Quantity = Quantity::new(Role::Alpha, ALPHA_MIN, 1.0).log_from(1e-8).shown(1e-4, 1.0, 0.2);
 /// Exponent of a cosine, in \[0, 1e7\].
 pub const EXPONENT: Quantity = Quantity::new(Role::Exponent, 0.0, 1e7).log_from(1e-2).shown(1.0, 1e4, 30.0);
 /// A relative index of refraction, in \[0.01, 100\].

@@ -1,6 +1,6 @@
 //! `Source`: what parameters are read from. A scene file, a JSON document, or an instrument that goes through all choices.
 
-use super::{Entry, Parameter, Words, each_key};
+use super::entry::{Entry, Parameter, Words, each_key};
 use crate::real::Real;
 use crate::rgb::Rgb;
 

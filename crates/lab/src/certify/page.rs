@@ -1,8 +1,8 @@
 //! The certificate as a page: verdict, plots, safe ranges, costs, every check.
 
 use super::Certificate;
-use crate::run::Options;
 use crate::speed::Count;
+use crate::task::Options;
 use gonio_report::number::range;
 use gonio_report::{Cell, Check, Environment, Html, Page, Plot, Table, Tone, checks_table};
 

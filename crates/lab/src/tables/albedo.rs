@@ -3,9 +3,9 @@
 //! At each node µ(α) of the curve: how much less than 1 a white surface reflects, and at which cosine Fresnel's reflectance,
 //! Schlick's or a dielectric's, equals its mean over the facets that reflect.
 
+use super::decimals::{number, rounded};
 use super::fit::{chebyshev, least_squares, nodes};
 use super::ggx::{double_exponential, facets};
-use super::{number, rounded};
 use gonio_kernel::energy::albedo::{
     ALPHA_SMOOTH, IN_ALPHA, IN_ALPHA_ETA, IN_ETA, NODES, Node, Stretch, eta_basis, missing_factor,
 };
