@@ -1,6 +1,6 @@
 //! What needs the tracer and the instruments together: Gonio verified as a whole.
 //!
-//! - [`census`]: the same rays through every ray-casting backend, yours or ours, and every disagreement by name. [`bench`] says how
+//! - [`census`]: the same rays through every ray-casting backend, yours or ours, and every disagreement by name. [`mod@bench`] says how
 //!   many of them a backend casts per second.
 //! - Furnace scenes, whose every pixel is known, rendered through the whole tracer.
 //! - [`validate`]: the instruments of `gonio-lab`, the census and the furnaces in one run, each check handed on as it ends.
