@@ -58,6 +58,7 @@ compile_error!(
 
 mod alias;
 mod backend;
+mod bsdf;
 mod camera;
 pub mod effects;
 mod error;
@@ -78,22 +79,24 @@ pub mod scene;
 mod shade;
 mod sides;
 mod stats;
+mod surface_point;
 pub mod texture;
 pub mod world;
 
 pub use backend::{Backend, BackendError};
+pub use bsdf::{BatchBsdf, CustomLobe, Scattered};
 pub use camera::View;
 pub use effects::{Effect, EffectSet, SceneEffects};
 pub use error::WorldError;
 pub use film::{Crop, Rendering};
 pub use layers::Layers;
 pub use light::{SHORT_OF_LIGHT, Techniques};
-pub use material::{BatchBsdf, CustomLobe, MOST_COATS, MOST_LOBES, MaterialSurface, Scattered, constant_surface};
+pub use material::{MOST_COATS, MOST_LOBES, MaterialSurface, constant_surface};
 pub use picture::Picture;
-pub use point::SurfacePoint;
 pub use prepared::Prepared;
 pub use render::{Pass, Progress, RenderSettings, render};
 pub use stats::{LargeSample, RenderStats};
+pub use surface_point::SurfacePoint;
 pub use world::World;
 
 /// Runs the example of the README.

@@ -4,10 +4,13 @@
 //! power heuristic on both sides; after the camera or a delta event only scattering can reach it, with weight 1.
 //! Per vertex the order of additions is: emission, then the answer of the shadow ray.
 
+use crate::bsdf::BatchBsdf;
 use crate::effects::{Effect, EffectSet};
 use crate::layers::FirstHit;
-use crate::light::{ChosenSample, Reference, SHORT_OF_LIGHT, Techniques};
-use crate::material::{BatchBsdf, with_lanes};
+use crate::light::Techniques;
+use crate::light::lights::ChosenSample;
+use crate::light::sample::{Reference, SHORT_OF_LIGHT};
+use crate::material::with_lanes;
 use crate::point::ShadingPoints;
 use crate::queue::{Batch, Paths, Queue, ShadowQueue};
 use crate::sampler::{Purpose, Sampler};
@@ -139,7 +142,7 @@ fn shade(
 
     let wo = points.frame.to_local(-incoming.dir);
     let sides = Sides::new(points.point, points.normal, ctx.effects.has(Effect::Transmission));
-    let at = Reference::new(points, &sides);
+    let at = Reference::new(&points.frame, &sides);
     let draw = |purpose| ctx.sampler.draw(incoming.pixel, incoming.sample, depth, purpose);
     let light = ctx.world.lights.are_sampled(ctx.techniques).then(|| {
         let u = draw(Purpose::Light);

@@ -8,7 +8,7 @@
 //! - A ray starts off the plane of its triangle, on the side that it leaves on, by more than its position can be wrong.
 
 use crate::material::PreparedMaterial;
-use crate::point::SurfacePoint;
+use crate::surface_point::SurfacePoint;
 use gonio_kernel::frame::on_its_side;
 use gonio_kernel::{F32x8, Mask, Mask8, Real, Vec3};
 

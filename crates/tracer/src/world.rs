@@ -11,13 +11,14 @@ mod fingerprint;
 mod needs;
 mod placement;
 mod surfaces;
+mod triangle;
 
 use crate::camera::View;
 use crate::effects::SceneEffects;
 use crate::error::WorldError;
 use crate::light::area::Emitter;
-use crate::light::delta::DeltaLights;
-use crate::light::{Bounds, Lights};
+use crate::light::delta::{Bounds, DeltaLights, Light};
+use crate::light::lights::Lights;
 use crate::material::PreparedMaterial;
 use crate::normal_map::NormalMap;
 use crate::scene::{FilmSettings, Loading, Mesh, Scene};
@@ -26,6 +27,7 @@ use building::Placing;
 use gonio_accel::{Geometry, Sharing};
 use gonio_kernel::{F32x8, Rgb, Vec3};
 use std::borrow::Cow;
+use std::sync::Arc;
 use surfaces::Surfaces;
 
 /// A scene made ready: surfaces, materials, lights, camera, and the effects that it calls for.
@@ -154,7 +156,7 @@ fn emitters(surfaces: &Surfaces, materials: &[PreparedMaterial]) -> Vec<Emitter>
 }
 
 /// The lights that are no triangles.
-fn prepare_lights(scene: &Scene, bounds: &Bounds) -> Result<Vec<std::sync::Arc<dyn crate::light::Light>>, WorldError> {
+fn prepare_lights(scene: &Scene, bounds: &Bounds) -> Result<Vec<Arc<dyn Light>>, WorldError> {
     let prepared = (1..)
         .zip(&scene.lights)
         .map(|(number, light)| light.prepare(bounds).map_err(|why| WorldError::Light { number, why }));

@@ -3,9 +3,9 @@
 //! A triangle is chosen with probability proportional to its power (area times luminance), so the density of a point per area
 //! is luminance / Σ(area · luminance), the same on all triangles of a material. Light leaves from the front of the winding.
 
-use super::{LightSample, Reference};
+use super::sample::{LightSample, Reference};
 use crate::alias::{alias_table, pick};
-use crate::point::SurfacePoint;
+use crate::surface_point::SurfacePoint;
 use gonio_kernel::warp::sample_uniform_triangle;
 use gonio_kernel::{F32x8, Real, Rgb, U32x8, Vec3, each_lane};
 

@@ -5,12 +5,12 @@
 //!
 //! A new kind is a type with [`LightSource`], which describes it in the scene, and one with [`Light`], which is sampled.
 
-use super::{LightSample, Reference};
+use super::sample::{LightSample, Reference};
 use crate::alias::{alias_table, pick};
 use crate::effects::EffectSet;
 use crate::fingerprint::Fingerprint;
 use glam::DVec3;
-use gonio_kernel::{F32x8, Mask8, Real, Rgb, U32x8, Vec3, each_lane};
+use gonio_kernel::{F32x8, Mask8, U32x8, Vec3, each_lane};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -109,39 +109,5 @@ impl DeltaLights {
     /// Takes them into a fingerprint.
     pub(crate) fn describe(&self, print: &mut Fingerprint) {
         self.lights.iter().for_each(|light| print.numbers(light.numbers()));
-    }
-}
-
-impl LightSample {
-    /// Where there is none.
-    fn none() -> Self {
-        Self {
-            wi: Vec3::unit_z(),
-            pdf: F32x8::splat(1.0),
-            radiance: Rgb::splat(F32x8::splat(0.0)),
-            distance: F32x8::splat(0.0),
-            possible: Mask8::from_bits(0),
-        }
-    }
-
-    /// Of a delta light: the direction to `target`, which is at a distance, and what arrives there.
-    #[inline(always)]
-    pub(crate) fn of_point(
-        at: &Reference,
-        position: Vec3<f32>,
-        intensity: impl FnOnce(Vec3<F32x8>) -> Rgb<F32x8>,
-    ) -> Self {
-        let position = Vec3::broadcast(position);
-        let to = position - at.origin_towards(position);
-        let distance2 = to.length2();
-        let distance = distance2.sqrt();
-        let wi = to * distance.recip();
-        Self {
-            wi,
-            pdf: F32x8::ONE,
-            radiance: intensity(-wi) * distance2.recip(),
-            distance,
-            possible: distance.gt(F32x8::ZERO),
-        }
     }
 }

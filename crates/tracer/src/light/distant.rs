@@ -1,7 +1,7 @@
 //! A distant light: parallel rays, as from the sun without its disk.
 
 use super::delta::{Bounds, Light, LightSource};
-use super::{LightSample, Reference};
+use super::sample::{LightSample, Reference};
 use crate::effects::{Effect, EffectSet};
 use crate::scene::MAX_INTENSITY;
 use crate::scene::fields::{Fields, Refusal};

@@ -4,7 +4,7 @@
 //! below the horizon are wasted.
 
 use super::map::EnvironmentMap;
-use super::{LightSample, Reference};
+use super::sample::{LightSample, Reference};
 use crate::fingerprint::Fingerprint;
 use crate::sampler::Random4;
 use crate::scene;

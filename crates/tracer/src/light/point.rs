@@ -1,7 +1,7 @@
 //! A point light: the same intensity in all directions from one point.
 
 use super::delta::{Bounds, Light, LightSource};
-use super::{LightSample, Reference};
+use super::sample::{LightSample, Reference};
 use crate::effects::{Effect, EffectSet};
 use crate::scene::MAX_INTENSITY;
 use crate::scene::fields::{Fields, Refusal};

@@ -5,7 +5,7 @@
 //! Φ = 2πI·(1 − (sin c − sin b)/(c − b)), or 2πI·(1 − cos c) if the edge is sharp.
 
 use super::delta::{Bounds, Light, LightSource};
-use super::{LightSample, Reference};
+use super::sample::{LightSample, Reference};
 use crate::effects::{Effect, EffectSet};
 use crate::scene::MAX_INTENSITY;
 use crate::scene::fields::{Fields, Refusal};

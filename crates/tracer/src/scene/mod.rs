@@ -9,8 +9,8 @@ use glam::DAffine3;
 use gonio_kernel::lobe::{AnyLobe, Layering};
 use gonio_kernel::{Parameters, Rgb};
 
-use crate::light::LightSource;
-use crate::material::CustomLobe;
+use crate::bsdf::CustomLobe;
+use crate::light::delta::LightSource;
 use crate::normal_map::NormalMap;
 use crate::texture::Texture;
 

@@ -1,7 +1,8 @@
 //! Building [`Surfaces`]: instance by instance.
 
-use super::placement::{Placement, middle_of, normal_matrix, turn, unit_normal};
-use super::surfaces::{Offset, Surfaces, Triangle};
+use super::placement::{Placement, middle_of, normal_matrix, turn};
+use super::surfaces::{Offset, Surfaces};
+use super::triangle::{Triangle, unit_normal};
 use crate::effects::{Effect, EffectSet};
 use crate::scene::{Instance, Loading, Mesh, Stage};
 use glam::DVec3;

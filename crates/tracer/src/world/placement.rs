@@ -1,11 +1,11 @@
 //! Placing: from the coordinates of a mesh to those of the world.
 
-use crate::light::Bounds;
+use crate::light::delta::Bounds;
 use crate::scene::{Instance, Mesh};
 use glam::{DMat3, DVec3};
 use gonio_kernel::Vec3;
 
-use super::surfaces::Triangle;
+use super::triangle::{Triangle, unit_normal};
 
 /// How a mesh that is kept once comes to the world.
 #[derive(Clone, Debug)]
@@ -32,11 +32,6 @@ pub(super) fn normal_matrix(instance: &Instance) -> DMat3 {
 /// A normal, turned and made unit; 0 stays 0.
 pub(super) fn turn(normal_matrix: DMat3, n: [f32; 3]) -> Vec3<f32> {
     (normal_matrix * glam::Vec3::from(n).as_dvec3()).normalize_or_zero().as_vec3().to_array().into()
-}
-
-/// The unit normal on the front of a triangle's winding; 0 if it is too small to have one.
-pub(super) fn unit_normal([a, b, c]: &[Vec3<f32>; 3]) -> Vec3<f32> {
-    (*b - *a).cross(*c - *a).normalize_or(Vec3::new(0.0, 0.0, 0.0))
 }
 
 /// The middle of everything that is placed, and how far that reaches.

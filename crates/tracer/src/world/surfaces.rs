@@ -6,6 +6,7 @@
 //! triangles swap two corners, or where a mesh is kept once, its normals turn.
 
 use super::placement::{Placement, turn};
+use super::triangle::Triangle;
 use gonio_accel::{Geometry, GeometryError};
 use gonio_kernel::Vec3;
 
@@ -35,16 +36,6 @@ pub(super) struct Offset {
     pub(super) vertex: usize,
     /// Index into [`Surfaces::placements`] if what starts there is not laid out.
     pub(super) placement: Option<u32>,
-}
-
-/// What shading needs of every triangle.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Triangle {
-    pub(crate) corners: [Vec3<f32>; 3],
-    /// Geometric normal on the front of the winding, unit; 0 if the triangle is too small to have one.
-    pub(crate) normal: Vec3<f32>,
-    /// Index into `World::materials`.
-    pub(crate) material: u32,
 }
 
 impl Surfaces {
