@@ -67,9 +67,7 @@ impl<'w> ShadingPoints<'w> {
         let (x, y) = tangents(shading); // unit already: no need to normalise again
         let mut frame = Frame { x, y, z: shading };
         let materials = each_lane(|l| &world.materials[triangles[l].material as usize]);
-        let which = |is: fn(&PreparedMaterial) -> bool| {
-            Mask8::from_bits((0..F32x8::LANES).fold(0, |bits, l| bits | u32::from(is(materials[l])) << l))
-        };
+        let which = |is| lanes_where(&materials, is);
         if effects.has_uvs() && !world.surfaces.uvs.is_empty() {
             let at = |c: usize, k: usize| F32x8::from_fn(|l| world.surfaces.uvs[vertices[l][c]][k]);
             let [u, v] = [[at(0, 0), at(1, 0), at(2, 0)], [at(0, 1), at(1, 1), at(2, 1)]];
@@ -122,11 +120,23 @@ impl<'w> ShadingPoints<'w> {
 }
 
 impl ShadingPoints<'_> {
+    /// Where the material is such.
+    #[inline(always)]
+    pub(crate) fn which(&self, is: fn(&PreparedMaterial) -> bool) -> Mask8 {
+        lanes_where(&self.materials, is)
+    }
+
     /// Whether all eight are of the same material.
     #[inline(always)]
     pub(crate) fn of_one_material(&self) -> bool {
         self.materials.iter().all(|&m| std::ptr::eq(m, self.materials[0]))
     }
+}
+
+/// The lanes whose material is such.
+#[inline(always)]
+fn lanes_where(materials: &[&PreparedMaterial; F32x8::LANES], is: fn(&PreparedMaterial) -> bool) -> Mask8 {
+    Mask8::from_bits((0..F32x8::LANES).fold(0, |bits, l| bits | u32::from(is(materials[l])) << l))
 }
 
 /// The normals of the lanes' maps at their texture coordinates, in tangent space; (0, 0, 1) without a map.

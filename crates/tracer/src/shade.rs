@@ -134,7 +134,7 @@ fn shade(
     }
     let mut live = batch.live;
     if ctx.effects.has(Effect::OneSided) {
-        live = live & sides::scattering(points.front, &points.materials);
+        live = live & sides::scattering(points.front, points.which(|material| material.two_sided));
     }
     if !live.any() {
         return 0;

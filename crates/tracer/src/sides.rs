@@ -7,7 +7,6 @@
 //!   transmitted if it leaves on the other side by both; what the two disagree on is black.
 //! - A ray starts off the plane of its triangle, on the side that it leaves on, by more than its position can be wrong.
 
-use crate::material::PreparedMaterial;
 use crate::surface_point::SurfacePoint;
 use gonio_kernel::frame::on_its_side;
 use gonio_kernel::{F32x8, Mask, Mask8, Real, Vec3};
@@ -53,9 +52,8 @@ impl Sides {
     }
 }
 
-/// Where materials scatter at all that are met from the front or from behind.
+/// Where a surface scatters at all that is met from the front or from behind.
 #[inline(always)]
-pub(crate) fn scattering(front: Mask8, materials: &[&PreparedMaterial; F32x8::LANES]) -> Mask8 {
-    let two_sided = materials.iter().enumerate().fold(0, |bits, (lane, m)| bits | u32::from(m.two_sided) << lane);
-    front | Mask8::from_bits(two_sided)
+pub(crate) fn scattering(front: Mask8, two_sided: Mask8) -> Mask8 {
+    front | two_sided
 }

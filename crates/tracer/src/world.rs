@@ -25,7 +25,7 @@ use crate::scene::{FilmSettings, Loading, Mesh, Scene};
 use crate::texture::Texture;
 use building::Placing;
 use gonio_accel::{Geometry, Sharing};
-use gonio_kernel::{F32x8, Rgb, Vec3};
+use gonio_kernel::Vec3;
 use std::borrow::Cow;
 use std::sync::Arc;
 use surfaces::Surfaces;
@@ -161,10 +161,4 @@ fn prepare_lights(scene: &Scene, bounds: &Bounds) -> Result<Vec<Arc<dyn Light>>,
         .zip(&scene.lights)
         .map(|(number, light)| light.prepare(bounds).map_err(|why| WorldError::Light { number, why }));
     prepared.collect()
-}
-
-/// The same colour in every lane.
-#[inline(always)]
-pub(crate) fn splat_rgb(c: Rgb<f32>) -> Rgb<F32x8> {
-    c.map(F32x8::splat)
 }

@@ -4,11 +4,10 @@
 //! below the horizon are wasted.
 
 use super::map::EnvironmentMap;
-use super::sample::{LightSample, Reference};
+use super::sample::{LightSample, Reference, splat_rgb};
 use crate::fingerprint::Fingerprint;
 use crate::sampler::Random4;
 use crate::scene;
-use crate::world::splat_rgb;
 use gonio_kernel::warp::{pdf_cosine_hemisphere, sample_cosine_hemisphere};
 use gonio_kernel::{F32x8, Mask, Mask8, Real, Rgb, Vec3};
 

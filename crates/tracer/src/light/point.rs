@@ -1,11 +1,10 @@
 //! A point light: the same intensity in all directions from one point.
 
 use super::delta::{Bounds, Light, LightSource};
-use super::sample::{LightSample, Reference};
+use super::sample::{LightSample, Reference, splat_rgb};
 use crate::effects::{Effect, EffectSet};
 use crate::scene::MAX_INTENSITY;
 use crate::scene::fields::{Fields, Refusal};
-use crate::world::splat_rgb;
 use glam::DVec3;
 use gonio_kernel::{F32x8, Rgb, Vec3};
 use std::f64::consts::PI;

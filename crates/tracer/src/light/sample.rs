@@ -92,3 +92,9 @@ impl LightSample {
         }
     }
 }
+
+/// The same colour in every lane.
+#[inline(always)]
+pub(super) fn splat_rgb(c: Rgb<f32>) -> Rgb<F32x8> {
+    c.map(F32x8::splat)
+}

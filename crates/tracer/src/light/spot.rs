@@ -5,11 +5,10 @@
 //! Φ = 2πI·(1 − (sin c − sin b)/(c − b)), or 2πI·(1 − cos c) if the edge is sharp.
 
 use super::delta::{Bounds, Light, LightSource};
-use super::sample::{LightSample, Reference};
+use super::sample::{LightSample, Reference, splat_rgb};
 use crate::effects::{Effect, EffectSet};
 use crate::scene::MAX_INTENSITY;
 use crate::scene::fields::{Fields, Refusal};
-use crate::world::splat_rgb;
 use glam::DVec3;
 use gonio_kernel::math::atan2_turns;
 use gonio_kernel::{F32x8, Real, Rgb, Vec3};
