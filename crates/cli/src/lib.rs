@@ -1,4 +1,4 @@
-//! The command line of Gonio: `gonio render`, `compare`, `bsdf`, `certify`, `accel` and `validate`.
+//! The command line of Gonio: `gonio render`, `compare`, `bsdf`, `certify`, `effects`, `accel` and `validate`.
 //!
 //! One file per subcommand, arguments in, text out: scenes and pictures belong to `gonio-tracer`, their files to `gonio-io`,
 //! scattering to `gonio-kernel`, its instruments to `gonio-lab`, what needs both to `gonio-verify`, pages and JSON to
@@ -14,6 +14,7 @@ mod bsdf;
 mod certify;
 mod compare;
 mod cpu;
+mod effects;
 mod environment;
 mod output;
 mod render;
@@ -48,6 +49,7 @@ enum Command {
     Accel(accel::Args),
     Compare(compare::Args),
     Certify(certify::Args),
+    Effects(effects::Args),
     Validate(validate::Args),
     #[command(hide = true)]
     Tables(tables::Args),
@@ -61,6 +63,7 @@ impl Command {
             Self::Accel(args) => accel::run(args),
             Self::Compare(args) => compare::run(args),
             Self::Certify(args) => certify::run(args),
+            Self::Effects(args) => effects::run(args),
             Self::Validate(args) => validate::run(args),
             Self::Tables(args) => tables::run(args),
         }

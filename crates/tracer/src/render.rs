@@ -98,6 +98,16 @@ pub fn render(
     settings: &RenderSettings,
     after_pass: &mut dyn FnMut(&Pass) -> ControlFlow<()>,
 ) -> Rendering {
+    let needed = prepared.world().effects().set();
+    render_looking_at(if settings.every_effect { EffectSet::ALL } else { needed }, prepared, settings, after_pass)
+}
+
+fn render_looking_at(
+    effects: EffectSet,
+    prepared: &Prepared,
+    settings: &RenderSettings,
+    after_pass: &mut dyn FnMut(&Pass) -> ControlFlow<()>,
+) -> Rendering {
     let start = Instant::now();
     let (world, accel) = (prepared.world(), prepared.accel());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build().ok();
@@ -105,7 +115,7 @@ pub fn render(
     let mut film = Film::new(world, settings.crop, settings.layers, threads);
     let ctx = Context {
         world,
-        effects: if settings.every_effect { EffectSet::ALL } else { world.effects().set() },
+        effects,
         sampler: Sampler::new(settings.seed),
         max_depth: settings.max_depth,
         russian_roulette: settings.russian_roulette,
@@ -139,3 +149,6 @@ pub fn render(
     }
     film.develop(start.elapsed().as_secs_f64())
 }
+
+#[cfg(test)]
+mod tests;
