@@ -14,12 +14,14 @@ use crate::light::delta::LightSource;
 use crate::normal_map::NormalMap;
 use crate::texture::Texture;
 
+mod builder;
 mod environment;
 pub mod fields;
 mod film;
 mod integrator;
 
 pub use crate::camera::{Camera, CameraError, CameraSpec};
+pub use builder::{BuildError, SceneBuilder};
 pub use environment::{Environment, Sky, SkyMap};
 pub use film::FilmSettings;
 pub use integrator::IntegratorSettings;
