@@ -8,7 +8,7 @@ use crate::output::{Target, probe, write_text};
 use crate::usage::{seed, spinner};
 use anyhow::{Context, Result, anyhow};
 use count::count;
-use gonio_lab::{Call, Certificate, Count, Effort, Options, certify};
+use gonio_lab::{Certificate, Count, Effort, Options, certify};
 use gonio_report::json;
 use gonio_tracer::{MaterialSurface, constant_surface};
 use serde::Serialize;
@@ -115,15 +115,4 @@ fn load(path: &Path) -> Result<(String, MaterialSurface<f32>)> {
     let surface = constant_surface(&material)
         .ok_or_else(|| anyhow!("{}: a material with images cannot be certified by itself", path.display()))?;
     Ok((material.name, surface))
-}
-
-impl count::Exercise {
-    fn run(self, surface: &MaterialSurface<f32>) {
-        gonio_lab::exercise(surface, self.call, self.lanes, self.passes);
-    }
-}
-
-/// A call by its name.
-fn call(name: &str) -> Option<Call> {
-    Call::ALL.into_iter().find(|call| call.name() == name)
 }

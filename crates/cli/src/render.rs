@@ -1,5 +1,6 @@
 //! `gonio render`: a scene in, pictures and statistics out.
 
+mod origin;
 mod pictures;
 mod progress;
 mod stats;
@@ -11,7 +12,8 @@ use anyhow::{Context, Result};
 use gonio_accel::Intersect;
 use gonio_tracer::scene::Scene;
 use gonio_tracer::{Backend, Crop, Prepared, RenderSettings, World};
-use pictures::{Origin, is_picture};
+use origin::{Origin, Times};
+use pictures::is_picture;
 use std::cell::LazyCell;
 use std::io::{self, IsTerminal};
 use std::ops::ControlFlow;
@@ -105,7 +107,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let build_seconds = start.elapsed().as_secs_f64();
 
     let settings = settings(args, &scene);
-    let times = stats::Times { load_seconds, build_seconds };
+    let times = Times { load_seconds, build_seconds };
     let origin = Origin {
         scene_file: &args.scene,
         scene: &scene,

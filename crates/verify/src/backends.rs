@@ -9,8 +9,8 @@ use crate::census::{
     is_judged, judge, specimens,
 };
 use crate::error::Error;
+use crate::outcome::outcome;
 use crate::shipped::{CORNELL_BOX, unpack};
-use crate::validation::outcome;
 use gonio_accel::{Geometry, Intersect};
 use gonio_lab::random::seed_for;
 use gonio_lab::{Check, Effort, Options, Outcome};

@@ -55,6 +55,7 @@
 
 mod aim;
 mod answer;
+mod ball;
 mod contender;
 mod dice;
 mod family;
@@ -66,23 +67,25 @@ mod observe;
 mod rays;
 mod record;
 mod specimen;
+mod standard;
 mod table;
 mod topology;
+mod wide;
 
 pub use answer::Kind;
-pub use contender::{Contender, Standard};
+pub use contender::Contender;
 pub use family::Family;
 pub use faults::{FAULTS, Fault};
 pub use judge::{Finding, What};
 pub use record::{Disagreement, HitRecord, Log, Number, RayRecord, Row, Told};
 pub use specimen::Specimen;
+pub use standard::Standard;
 pub use table::table;
 
 pub(crate) use contender::Witness;
 pub(crate) use faults::SCALES as FAULT_SCALES;
 pub(crate) use judge::{allowed, forbids_leaks, is_judged, judge};
 pub(crate) use meshes::specimens;
-pub(crate) use observe::ORACLE;
 pub(crate) use rays::{Caster, bounces, shadows};
 
 use crate::error::Error;

@@ -17,7 +17,7 @@ mod furnace;
 
 use crate::blocks::{Worst, tests, worst_block};
 use crate::error::Error;
-use crate::validation::outcome;
+use crate::outcome::outcome;
 use furnace::{FURNACES, Furnace, Shot};
 use gonio_io::png;
 use gonio_lab::{Check, Effort, Options, sidak};

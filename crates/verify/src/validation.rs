@@ -8,7 +8,7 @@
 use crate::census::Log;
 use crate::error::Error;
 use crate::{backends, scenes};
-use gonio_lab::{Check, Options, Outcome, validate_kernel};
+use gonio_lab::{Check, Options, validate_kernel};
 use gonio_report::Exhibit;
 use std::path::Path;
 
@@ -37,9 +37,4 @@ pub fn validate(options: &Options, out: &Path, sink: &mut dyn FnMut(Check)) -> R
     let exhibits = scenes::run(options, out, sink)?;
     let census = backends::run(options, out, sink)?;
     Ok(Found { exhibits, census })
-}
-
-/// Passed or failed.
-pub(crate) fn outcome(passed: bool) -> Outcome {
-    if passed { Outcome::Passed } else { Outcome::Failed }
 }

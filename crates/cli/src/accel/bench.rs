@@ -1,6 +1,6 @@
 //! `gonio accel bench`: how many rays each backend casts per second, side by side.
 
-use super::{backends, check_distinct, not_built, specimen};
+use super::args::{backends, check_distinct, not_built, specimen};
 use crate::environment;
 use crate::output::{Target, write_text};
 use crate::usage::{count, spinner};

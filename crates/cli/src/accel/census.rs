@@ -1,6 +1,6 @@
 //! `gonio accel census`: the same rays through every backend, and every disagreement with the ray that makes it.
 
-use super::{backends, check_distinct, not_built, specimen};
+use super::args::{backends, check_distinct, not_built, specimen};
 use crate::environment;
 use crate::output::{Output, Target, write_text};
 use crate::usage::{Usage, count, spinner};

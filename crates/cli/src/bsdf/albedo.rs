@@ -3,10 +3,10 @@
 //! The estimate is the mean weight f_cos/pdf over samples of the closure. It carries the radiance scale; a material that
 //! transmits into another medium will need the importance form here.
 
-use super::model::{Drawn, Happening};
+use super::model::{Drawn, Happening, load};
+use super::precision::Precision;
 use super::rows::BATCH;
 use super::sample::uniform;
-use super::{Precision, load};
 use crate::output::{Target, write_text};
 use crate::usage::count;
 use anyhow::Result;

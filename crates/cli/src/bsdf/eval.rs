@@ -1,7 +1,8 @@
 //! `gonio bsdf eval`: f_cos and pdf for a table of directions.
 
+use super::model::load;
+use super::precision::Precision;
 use super::rows::{RowWriter, read_rows};
-use super::{Precision, load};
 use crate::output::Target;
 use anyhow::Result;
 use std::path::PathBuf;

@@ -1,7 +1,10 @@
 //! A surface as plain numbers in `f64`, whatever arithmetic computes inside: one at a time or eight side by side.
 
-use gonio_kernel::{Closure, F32x8, Mask8, Real, Rgb, Value, Vec3};
-use gonio_tracer::MaterialSurface;
+use super::precision::Precision;
+use anyhow::{Context, Result, anyhow};
+use gonio_kernel::{Closure, F32x8, Mask8, Parameters, Real, Rgb, Value, Vec3};
+use gonio_tracer::{MaterialSurface, constant_surface};
+use std::path::Path;
 
 /// A local direction.
 pub(super) type Direction = [f64; 3];
@@ -53,6 +56,19 @@ pub(super) trait Model {
     fn eval(&self, pairs: &[[Direction; 2]]) -> Vec<Answer>;
     /// One sample for each triple of uniform numbers, in order.
     fn sample(&self, wo: Direction, u: &[[f64; 3]]) -> Vec<Drawn>;
+}
+
+/// Reads a material file and prepares it for the wanted arithmetic.
+pub(super) fn load(path: &Path, precision: Precision) -> Result<Box<dyn Model>> {
+    let text = std::fs::read_to_string(path).with_context(|| format!("{}: cannot be read", path.display()))?;
+    let material = gonio_io::material_from_toml_str(&text, path)?;
+    let surface = constant_surface(&material)
+        .ok_or_else(|| anyhow!("{}: a material with images cannot be evaluated by itself", path.display()))?;
+    Ok(match precision {
+        Precision::F32 => Box::new(surface),
+        Precision::F64 => Box::new(surface.to::<f64>()),
+        Precision::Lanes => Box::new(surface.to::<F32x8>()),
+    })
 }
 
 /// A `Real` that is filled from, and read as, `f64`.

@@ -1,6 +1,6 @@
 //! Tables of numbers: read as CSV, written as CSV or as JSON lines.
 
-use super::Precision;
+use super::precision::Precision;
 use crate::output::{Output, Target};
 use anyhow::{Context, Result, bail};
 use std::fs::File;

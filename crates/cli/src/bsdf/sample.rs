@@ -1,7 +1,8 @@
 //! `gonio bsdf sample`: sampled directions with everything that belongs to them.
 
+use super::model::load;
+use super::precision::Precision;
 use super::rows::{BATCH, RowWriter};
-use super::{Precision, load};
 use crate::output::Target;
 use crate::usage::{count, direction, warn};
 use anyhow::Result;

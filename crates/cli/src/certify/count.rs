@@ -1,8 +1,8 @@
 //! Instructions of a call, counted by valgrind: this program runs itself twice under callgrind, doing nothing but calls, and
 //! the difference of the two counts over the difference of the calls is what one costs. Start-up cancels.
 
-use super::call;
-use gonio_lab::{Call, Count};
+use gonio_lab::{Call, Count, exercise};
+use gonio_tracer::MaterialSurface;
 use std::path::Path;
 use std::process::Command;
 use std::str::FromStr;
@@ -10,10 +10,17 @@ use std::str::FromStr;
 /// What a run that is counted does: `eval:lanes:100`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Exercise {
-    pub(super) call: Call,
-    pub(super) lanes: bool,
+    call: Call,
+    lanes: bool,
     /// Passes over 256 directions.
-    pub(super) passes: u32,
+    passes: u32,
+}
+
+impl Exercise {
+    /// Makes the calls.
+    pub(super) fn run(self, surface: &MaterialSurface<f32>) {
+        exercise(surface, self.call, self.lanes, self.passes);
+    }
 }
 
 impl FromStr for Exercise {
@@ -28,6 +35,11 @@ impl FromStr for Exercise {
         };
         Ok(Self { call: call(&name).ok_or_else(wrong)?, lanes, passes: passes.parse().map_err(|_| wrong())? })
     }
+}
+
+/// A call by its name.
+fn call(name: &str) -> Option<Call> {
+    Call::ALL.into_iter().find(|call| call.name() == name)
 }
 
 /// How often a pass is repeated in the shorter and in the longer run, and how many calls it makes.

@@ -1,28 +1,12 @@
 //! Pictures and what they say of themselves: where a rendering goes.
 
-use super::stats::Times;
+use super::origin::Origin;
 use crate::output::{Target, extension, write_all};
 use anyhow::{Result, anyhow};
-use gonio_accel::Intersect;
 use gonio_io::exr::{self, Metadata, Window};
 use gonio_io::png;
-use gonio_tracer::scene::Scene;
-use gonio_tracer::{Backend, EffectSet, RenderSettings, Rendering};
-use std::cell::LazyCell;
+use gonio_tracer::Rendering;
 use std::path::Path;
-
-/// Where a rendering comes from.
-pub(super) struct Origin<'a> {
-    pub(super) scene_file: &'a Path,
-    pub(super) scene: &'a Scene,
-    /// The fingerprint of the world: formed when something wants to say it, once.
-    pub(super) scene_hash: LazyCell<String, Box<dyn Fn() -> String + 'a>>,
-    pub(super) settings: &'a RenderSettings,
-    pub(super) effects: EffectSet,
-    pub(super) backend: Backend,
-    pub(super) intersect: Intersect,
-    pub(super) times: Times,
-}
 
 /// Writes the picture to every target.
 ///

@@ -1,16 +1,8 @@
 //! The statistics of a rendering, as JSON.
 
-use super::pictures::Origin;
+use super::origin::Origin;
 use gonio_tracer::Rendering;
 use serde_json::{Value, json};
-
-/// What the renderer cannot know.
-pub(super) struct Times {
-    /// Reading the scene and making it ready.
-    pub(super) load_seconds: f64,
-    /// Building the acceleration structure.
-    pub(super) build_seconds: f64,
-}
 
 /// Everything that is known about a rendering. `x` and `y` are pixels of the whole picture, also with a crop.
 pub(super) fn stats(origin: &Origin, rendering: &Rendering) -> Value {

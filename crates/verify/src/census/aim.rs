@@ -6,6 +6,7 @@
 //! necessary (a ray over a ridge may go either way and says nothing), and it is computed in `f64` from the ray as it is.
 
 use super::specimen::{Place, Specimen};
+use super::wide::wide;
 use gonio_kernel::Vec3;
 use gonio_kernel::frame::tangents;
 
@@ -124,10 +125,6 @@ impl Projection {
         });
         well_inside.then_some(side)
     }
-}
-
-pub(crate) fn wide(v: Vec3<f32>) -> Vec3<f64> {
-    Vec3::new(v.x.into(), v.y.into(), v.z.into())
 }
 
 #[cfg(test)]

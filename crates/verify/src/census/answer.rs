@@ -1,8 +1,9 @@
 //! What a backend says of a ray, and whether two such answers agree.
 
-use super::Standard;
-use super::aim::{Ray, wide};
+use super::aim::Ray;
 use super::specimen::{Place, Specimen};
+use super::standard::Standard;
+use super::wide::wide;
 use gonio_accel::{Accel, Hit, Hit8, Opacity, Ray8, RayKind};
 use gonio_kernel::{F32x8, Mask8, Vec3};
 use serde::Serialize;

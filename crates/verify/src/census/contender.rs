@@ -1,35 +1,12 @@
-//! Who is looked at: a backend by its name, how it is built, and what is required of it.
+//! Who is looked at: a backend by its name, how it is built, and the standard that it is held to.
 
-use super::Fault;
+use super::faults::Fault;
 use super::specimen::Specimen;
+use super::standard::Standard;
 use crate::error::Error;
 use gonio_accel::{Accel, Geometry, Hit8, Intersect, Opacity, Ray8, RayKind};
 use gonio_kernel::Mask8;
 use gonio_tracer::Backend;
-use serde::Serialize;
-
-/// How a backend is compared with the oracle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Standard {
-    /// Every bit.
-    Exact,
-    /// Hit or miss, and the triangle or the distance within 1e-5 of distance and size. A few exceptions are allowed.
-    Close,
-    /// As close, but nothing is required.
-    Reported,
-}
-
-impl Standard {
-    /// What is required of a backend. A fast test promises nothing at edges.
-    pub fn of(backend: Backend, intersect: Intersect) -> Self {
-        match intersect {
-            Intersect::Fast if backend != Backend::Brute => Self::Reported,
-            _ if backend.is_exact() => Self::Exact,
-            _ => Self::Close,
-        }
-    }
-}
 
 /// How a backend is built over a geometry.
 type Build<'a> = Box<dyn Fn(&Geometry) -> Result<Box<dyn Accel>, Box<dyn std::error::Error + Send + Sync>> + 'a>;

@@ -1,8 +1,8 @@
 //! The random choices of one ray: a point, a direction, what it is aimed at, and the families that are made of these alone.
 
 use super::aim::{Ray, Target, covers};
+use super::ball::Ball;
 use super::family::Family;
-use super::inside::Ball;
 use super::specimen::{Place, Specimen};
 use gonio_kernel::warp::{sample_uniform_sphere, sample_uniform_triangle};
 use gonio_kernel::{F32x8, Vec3};

@@ -1,6 +1,6 @@
 //! Backends that are wrong on purpose, most of them a few rays in a thousand: the census must notice each.
 
-use super::Standard;
+use super::standard::Standard;
 use gonio_accel::{Accel, Hit8, NO_HIT, Opacity, Ray8, RayKind};
 use gonio_kernel::{F32x8, Mask8, U32x8};
 

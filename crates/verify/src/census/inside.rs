@@ -7,9 +7,10 @@
 //! is trusted with the answer, one only proposes candidates. Centres lie on lines along an axis through a vertex or through a
 //! point of an edge, so that rays along that axis meet them exactly.
 
-use super::aim::wide;
+use super::ball::Ball;
 use super::dice::Dice;
 use super::specimen::{Place, Specimen};
+use super::wide::wide;
 use gonio_accel::{Accel, Hit8, Ray8, RayKind};
 use gonio_kernel::{F32x8, Vec3};
 use std::f64::consts::PI;
@@ -25,15 +26,6 @@ const LEAST: u64 = 16;
 /// The smallest useful radius in units of the reach (the size of the scene and its distance from the origin): well above the
 /// rounding of places, 8·2⁻²⁴.
 const SMALLEST: f64 = 1.0 / 4096.0;
-
-/// A ball inside of a closed surface.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Ball {
-    pub(crate) centre: Vec3<f32>,
-    pub(crate) radius: f32,
-    /// The line through the centre along this axis meets a vertex or an edge exactly.
-    pub(crate) axis: usize,
-}
 
 /// Finds balls; none if nothing is closed, or only what is too thin or too small.
 pub(crate) fn balls(specimen: &Specimen, scout: &dyn Accel, seed: u64) -> Vec<Ball> {

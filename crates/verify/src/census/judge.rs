@@ -8,7 +8,7 @@
 
 use super::family::Family;
 use super::record::Row;
-use super::{ORACLE, Standard};
+use super::standard::{ORACLE, Standard};
 use serde::Serialize;
 
 /// One ray in so many may disagree.

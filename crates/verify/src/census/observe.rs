@@ -1,11 +1,12 @@
 //! One specimen at one scale: rays are cast, everybody is asked, answers are compared and counted.
 
 use super::answer::{self, Answer, Answers, Kind};
-use super::contender::{Standard, Witness};
+use super::contender::Witness;
 use super::family::Family;
 use super::rays::{Caster, Packet, pack};
 use super::record::{Disagreement, Log, Row, Told};
 use super::specimen::Specimen;
+use super::standard::{ORACLE, Standard};
 use super::{aim, judge};
 use gonio_accel::{Accel, Ray8};
 use gonio_kernel::{F32x8, Vec3};
@@ -23,8 +24,6 @@ pub(crate) struct Observer<'a> {
     pub(crate) patience: u64,
 }
 
-/// The oracle's name.
-pub(crate) const ORACLE: &str = "brute";
 /// Nearest hit, occlusion, and occlusion through a filter.
 pub(super) const QUESTIONS: u64 = 3;
 /// Packets per call, so that backends that work on streams see some.

@@ -4,9 +4,9 @@
 //! scale, so every scale sees the same choices. All lengths are relative to the specimen.
 
 use super::aim::Ray;
+use super::ball::Ball;
 use super::dice::Dice;
 use super::family::Family;
-use super::inside::Ball;
 use super::specimen::{Place, Specimen};
 use gonio_accel::{Accel, Hit8, Ray8, RayKind};
 use gonio_kernel::warp::sample_cosine_hemisphere;

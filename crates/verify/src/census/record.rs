@@ -1,9 +1,9 @@
 //! What a census leaves behind: rows of counts, and every disagreement with the ray that makes it.
 
-use super::Standard;
 use super::aim::Ray;
 use super::answer::{Answer, Kind};
 use super::family::Family;
+use super::standard::Standard;
 use gonio_accel::Hit;
 use gonio_kernel::Vec3;
 use serde::Serialize;

@@ -1,7 +1,7 @@
 //! What rays are cast at, with everything that is known of it: bounds, neighbourhoods, a camera, lights, and its scale.
 
-use super::aim::wide;
 use super::topology::Topology;
+use super::wide::wide;
 use crate::error::Error;
 use gonio_accel::{Geometry, Hit, Instance, Ray8, WorldTriangle};
 use gonio_kernel::{F32x8, Vec3};

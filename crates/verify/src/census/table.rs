@@ -2,8 +2,8 @@
 
 use super::family::Family;
 use super::judge::is_judged;
-use super::observe::ORACLE;
 use super::record::{Log, Row};
+use super::standard::ORACLE;
 use gonio_report::{Cell, Html, Table, Tone};
 
 /// The table, or nothing if there was no census.
