@@ -54,7 +54,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if pass.progress.spp_done >= 8 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     let radiance = rendering.picture.rgb[8 * 16 + 8][0];
-    // Below the light E = I/h² and L = c·E/π.
-    assert!((radiance - 0.5 * 10.0 / std::f32::consts::PI).abs() < 1e-2, "{radiance}");
+    assert!((radiance - 0.5 * 10.0 / std::f32::consts::PI).abs() < 1e-2, "{radiance}"); // L = c/π · I/h²
     Ok(())
 }
