@@ -15,6 +15,7 @@ mod blocks;
 pub mod census;
 pub mod difference;
 mod error;
+mod lights;
 mod outcome;
 mod scenes;
 mod shipped;
