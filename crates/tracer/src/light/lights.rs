@@ -78,10 +78,11 @@ impl Lights {
                 Some(other) => LightSample::select(lanes, sample, other),
             });
         };
-        if hittable && (live & of_environment).any() {
-            if let Some(sample) = self.environment.sample(at, u, more) {
-                add(of_environment, sample);
-            }
+        if hittable
+            && (live & of_environment).any()
+            && let Some(sample) = self.environment.sample(at, u, more)
+        {
+            add(of_environment, sample);
         }
         if hittable && (live & of_triangles).any() && !self.triangles.emitters().is_empty() {
             add(of_triangles, self.triangles.sample(at, u.0[1], rest(second, third), u_position));
