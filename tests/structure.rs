@@ -1,4 +1,4 @@
-//! The structure of the code: which crate may use which, no import cycles within a crate.
+//! The structure of the code: which crate may use which, no import cycles within a crate, no long file without a reason.
 
 mod crates; // The order of the crates, by `cargo metadata`.
 mod cycles; // The graph of imports and the cycles in it.
@@ -33,6 +33,41 @@ fn no_module_imports_itself_through_others() {
         found.extend(cycles::cycles(&graph).into_iter().map(|cycle| format!("{}: {cycle}", folder.display())));
     }
     assert!(found.is_empty(), "{} import cycles:\n{}", found.len(), found.join("\n"));
+}
+
+/// Folders whose files are held to be short.
+const SHORT: [&str; 6] = ["crates/kernel/src", "crates/accel/src", "crates/lab/src", "xtask/src", "tests", "benches"];
+
+/// More lines than that are two thoughts.
+const MOST_LINES: usize = 400;
+
+/// How a line among the first ones starts that says why a file is longer.
+const REASON: &str = "//! Over 400 lines: ";
+
+#[test]
+fn long_files_give_their_reason() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let files = SHORT.iter().flat_map(|folder| rust_files(&root.join(folder)));
+    let long: Vec<String> = files
+        .filter(|file| is_too_long(&fs::read_to_string(file).unwrap()))
+        .map(|file| file.display().to_string())
+        .collect();
+    assert!(long.is_empty(), "over {MOST_LINES} lines without a line {REASON:?} in the head:\n{}", long.join("\n"));
+}
+
+#[test]
+fn a_long_file_is_noticed_unless_it_gives_a_reason_in_its_head() {
+    let of = |head: &str, lines: usize| is_too_long(&format!("{head}{}", "//\n".repeat(lines)));
+    assert!(of("", 401) && !of("", 400));
+    assert!(!of("//! A proof.\n//! Over 400 lines: it is one.\n", 500));
+    assert!(of("//! Over 400 lines:\n", 500), "no reason is given");
+    assert!(of(&format!("{}//! Over 400 lines: too late.\n", "//\n".repeat(15)), 500));
+}
+
+fn is_too_long(text: &str) -> bool {
+    let has_reason =
+        text.lines().take(15).any(|line| line.strip_prefix(REASON).is_some_and(|reason| !reason.trim().is_empty()));
+    text.lines().count() > MOST_LINES && !has_reason
 }
 
 /// The Rust files below a folder: path within it, with slashes, and text.

@@ -1,5 +1,7 @@
 //! The watertight ray–triangle test, and the slab interval that goes with it.
 //!
+//! Over 400 lines: the proof that no hit is lost speaks of the test, of the slack and of the slab at once.
+//!
 //! **Watertight.** The vertices, relative to the origin, are projected on two axes across the direction; a projected vertex
 //! depends on nothing but itself and the ray, so triangles that share a vertex see the same point. The ray is inside if
 //! the three edge functions p.x·q.y − p.y·q.x have no two different signs. Rounding is monotonic, so the difference of two
