@@ -13,7 +13,7 @@ const PROGRAMS: [(&str, &str); 3] = [("own-lobe", ""), ("eight-metals", ""), ("s
 /// What the tracer asks for on x86-64.
 const FLAG: &str = if cfg!(target_arch = "x86_64") { "-C target-cpu=x86-64-v3" } else { "" };
 /// What it says without.
-const REFUSAL: &str = "gonio-tracer needs AVX2 and FMA on x86-64";
+const REFUSAL: &str = "error: gonio-tracer needs AVX2 and FMA on x86-64";
 const MOST_LINES: usize = 59;
 
 pub(crate) fn run() -> Outcome {

@@ -5,7 +5,7 @@
 //! at [`EffectSet::ALL`] for the proof that the picture is the same.
 //!
 //! Effects are tested once per queue stage. An absent effect is skipped, not evaluated with neutral numbers, and random numbers
-//! have fixed addresses (see [`crate::sampler`]), so both pictures have the same hash. A scattering model is an effect too: its
+//! have fixed addresses (see `sampler.rs`), so both pictures have the same hash. A scattering model is an effect too: its
 //! code runs if a material is made of it, see [`SceneEffects::models`].
 
 use std::collections::BTreeMap;

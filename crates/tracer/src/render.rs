@@ -36,7 +36,7 @@ pub struct RenderSettings {
     pub threads: usize,
     /// The part of the picture to render, as far as it lies inside; `None` for all of it.
     pub crop: Option<Crop>,
-    /// Whether to gather [`Layers`] as well: about 170 bytes per pixel.
+    /// Whether to gather [`Layers`](crate::Layers) as well: about 170 bytes per pixel.
     pub layers: bool,
     /// Whether to look at every effect, needed or not: slower, and the same picture, which is the proof.
     pub every_effect: bool,
@@ -89,7 +89,7 @@ impl Pass<'_> {
 }
 
 /// Renders the world. `after_pass` is called on the calling thread after each pass of samples over the film; if it
-/// breaks, the render ends with the samples it has ([`RenderStats::spp`]).
+/// breaks, the render ends with the samples it has ([`RenderStats::spp`](crate::RenderStats::spp)).
 ///
 /// # Panics
 /// Never for a world and settings in their domains; a thread pool that cannot be made falls back to the global one.

@@ -3,8 +3,8 @@
 //! Everything is placed, recentred and rounded once. The middle of the scene becomes the origin while positions are still
 //! `f64`, so a scene far from its own origin (georeferenced data) keeps its precision.
 //!
-//! The parts, each in its file: how meshes come to the world ([`placement`]), what shading knows of the triangles
-//! ([`surfaces`]), which effects the scene calls for ([`needs`]), and the fingerprint.
+//! The parts, each in its file: how meshes come to the world (`placement`), what shading knows of the triangles
+//! (`surfaces`), which effects the scene calls for (`needs`), and the fingerprint.
 
 mod building;
 mod fingerprint;
