@@ -128,7 +128,13 @@ impl SceneEffects {
     /// Notes what a part of the scene needs; `part` is its name, as in `material "gold"`.
     pub(crate) fn need(&mut self, effects: EffectSet, part: impl Fn() -> String) {
         self.set = self.set.with(effects);
-        effects.iter().for_each(|effect| self.by.entry(effect).or_default().push(part()));
+        for effect in effects.iter() {
+            let (parts, part) = (self.by.entry(effect).or_default(), part());
+            // Parts of one file have one name.
+            if parts.last() != Some(&part) {
+                parts.push(part);
+            }
+        }
     }
 
     /// Notes that a part of the scene scatters by a model.
