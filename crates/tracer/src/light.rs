@@ -23,5 +23,5 @@ pub use distant::DistantLight;
 pub use kinds::{KINDS, ReadLight};
 pub use mis::Techniques;
 pub use point::PointLight;
-pub use sample::{LightSample, Reference, SHORT_OF_LIGHT};
+pub use sample::{LightSample, Reference, SHORT_OF_LIGHT, Towards};
 pub use spot::SpotLight;

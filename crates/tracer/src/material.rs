@@ -187,8 +187,7 @@ impl<B: BatchBsdf + Copy + 'static> IntoShared for B {
 }
 
 fn constant(material: &Material) -> Arc<dyn BatchBsdf> {
-    let splat = |x: f32| F32x8::splat(x);
-    let lobe = |spec: &LobeSpec, _| (spec.weight.map(splat), spec.lobe.to::<F32x8>());
+    let lobe = |spec: &LobeSpec, _| (Rgb::broadcast(spec.weight), spec.lobe.to::<F32x8>());
     assemble(&material.lobes, lobe, |bsdf| bsdf.share())
 }
 
@@ -216,8 +215,7 @@ fn gather(
     textures: &[Texture],
     [u, v]: [[f32; F32x8::LANES]; 2],
 ) -> (Rgb<F32x8>, Kernel8) {
-    let weight = |channel: fn(Rgb<f32>) -> f32| F32x8::from_fn(|l| channel(specs[l].weight));
-    let weight = Rgb::new(weight(|c| c.r), weight(|c| c.g), weight(|c| c.b));
+    let weight = Rgb::from_lanes(|l| specs[l].weight);
     let constant = Kernel::gather(each_lane(|l| &specs[l].lobe));
     if specs.iter().all(|spec| spec.textures.is_empty()) {
         return (weight, constant);

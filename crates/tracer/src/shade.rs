@@ -1,7 +1,7 @@
-//! The shading stage: eight paths at a time receive emitted light, ask a light, and scatter.
+//! The shading stage: eight paths at a time receive emitted light, sample a light, and scatter.
 //!
-//! Multiple importance sampling: light that can be reached both by scattering and by asking the light is weighted by the
-//! power heuristic on both sides; after the camera or a delta event only scattering can reach it, with weight 1.
+//! Multiple importance sampling: light that both scattering and a light sample can find is weighted by the
+//! power heuristic on both sides; after the camera or a delta event only scattering can find it, with weight 1.
 //! Per vertex the order of additions is: emission, then the answer of the shadow ray.
 
 use crate::bsdf::BatchBsdf;
@@ -201,11 +201,7 @@ fn receive_emission(
     if !materials.iter().any(|m| m.emits()) {
         return;
     }
-    let emission = Rgb::new(
-        F32x8::from_fn(|l| materials[l].emission.r),
-        F32x8::from_fn(|l| materials[l].emission.g),
-        F32x8::from_fn(|l| materials[l].emission.b),
-    );
+    let emission = Rgb::from_lanes(|l| materials[l].emission);
     let pdf = ctx.world.lights.triangles.pdf(emission, [points.t; 2], points.cos_geometric);
     let weight = ctx.techniques.weight_of_scattering(incoming.pdf, pdf);
     let mask = batch.live & points.front & emission.largest().gt(F32x8::ZERO);

@@ -1,6 +1,7 @@
-//! Vectors of eight lanes: one per lane, put together and taken apart.
+//! Vectors and colours of eight lanes: one per lane, put together and taken apart.
 
 use super::F32x8;
+use crate::rgb::Rgb;
 use crate::vec3::Vec3;
 
 impl Vec3<F32x8> {
@@ -23,5 +24,23 @@ impl Vec3<F32x8> {
     #[inline(always)]
     pub fn from_lanes(f: impl Fn(usize) -> Vec3<f32>) -> Self {
         Self::new(F32x8::from_fn(|i| f(i).x), F32x8::from_fn(|i| f(i).y), F32x8::from_fn(|i| f(i).z))
+    }
+}
+
+/// ```
+/// use gonio_kernel::{Real, Rgb};
+/// let greys = Rgb::from_lanes(|i| Rgb::splat(i as f32));
+/// assert_eq!((greys.g + Rgb::broadcast(Rgb::splat(1.0)).g).lane(3), 4.0);
+/// ```
+impl Rgb<F32x8> {
+    /// The same colour in every lane.
+    #[inline(always)]
+    pub fn broadcast(c: Rgb<f32>) -> Self {
+        c.map(F32x8::splat)
+    }
+    /// Lane *i* is `f(i)`; `f` is asked once per channel and lane.
+    #[inline(always)]
+    pub fn from_lanes(f: impl Fn(usize) -> Rgb<f32>) -> Self {
+        Self::new(F32x8::from_fn(|i| f(i).r), F32x8::from_fn(|i| f(i).g), F32x8::from_fn(|i| f(i).b))
     }
 }

@@ -70,10 +70,8 @@ impl<R: Real, L: Parameters<Real = R>> Parameters for Weighted<R, L> {
     #[cfg(feature = "wide")]
     #[inline(always)]
     fn gather(lanes: [&Weighted<f32, L::Of<f32>>; 8]) -> Weighted<crate::F32x8, L::Of<crate::F32x8>> {
-        use crate::{F32x8, each_lane};
-        let weight = |channel: fn(Rgb<f32>) -> f32| F32x8::from_fn(|i| channel(lanes[i & 7].weight));
-        let weight = Rgb::new(weight(|c| c.r), weight(|c| c.g), weight(|c| c.b));
-        Weighted { weight, lobe: L::gather(each_lane(|i| &lanes[i & 7].lobe)) }
+        let weight = Rgb::from_lanes(|i| lanes[i & 7].weight);
+        Weighted { weight, lobe: L::gather(crate::each_lane(|i| &lanes[i & 7].lobe)) }
     }
     #[inline(always)]
     fn same_code(&self, other: &Self) -> bool {

@@ -3,7 +3,7 @@
 //! A triangle is chosen with probability proportional to its power (area times luminance), so the density of a point per area
 //! is luminance / Σ(area · luminance), the same on all triangles of a material. Light leaves from the front of the winding.
 
-use super::sample::{LightSample, Reference};
+use super::sample::{LightSample, Reference, Towards};
 use crate::alias::{alias_table, pick};
 use crate::surface_point::SurfacePoint;
 use gonio_kernel::warp::sample_uniform_triangle;
@@ -56,16 +56,9 @@ impl EmissiveTriangles {
         let corner = |c: usize| Vec3::from_lanes(|l| emitters[l].corners[c]);
         let corners = [corner(0), corner(1), corner(2)];
         let normal = Vec3::from_lanes(|l| emitters[l].normal);
-        let radiance = Rgb::new(
-            F32x8::from_fn(|l| emitters[l].radiance.r),
-            F32x8::from_fn(|l| emitters[l].radiance.g),
-            F32x8::from_fn(|l| emitters[l].radiance.b),
-        );
+        let radiance = Rgb::from_lanes(|l| emitters[l].radiance);
         let target = SurfacePoint::new(&corners, sample_uniform_triangle(u_position)).off_plane(normal);
-        let to = target - at.origin_towards(target);
-        let distance2 = to.length2();
-        let distance = distance2.sqrt();
-        let wi = to * distance.recip();
+        let Towards { wi, distance, distance2 } = at.towards(target);
         let cos = -normal.dot(wi);
         LightSample {
             wi,

@@ -1,7 +1,7 @@
 //! A distant light: parallel rays, as from the sun without its disk.
 
 use super::delta::{Bounds, Light, LightSource};
-use super::sample::{LightSample, Reference, splat_rgb};
+use super::sample::{LightSample, Reference};
 use crate::effects::{Effect, EffectSet};
 use crate::scene::MAX_INTENSITY;
 use crate::scene::fields::{Fields, Refusal};
@@ -58,7 +58,7 @@ impl Light for Prepared {
         LightSample {
             wi: Vec3::broadcast(self.wi),
             pdf: F32x8::ONE,
-            radiance: splat_rgb(self.irradiance),
+            radiance: Rgb::broadcast(self.irradiance),
             distance: F32x8::splat(f32::INFINITY),
             possible: Mask8::splat(true),
         }

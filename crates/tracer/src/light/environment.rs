@@ -4,7 +4,7 @@
 //! below the horizon are wasted.
 
 use super::map::EnvironmentMap;
-use super::sample::{LightSample, Reference, splat_rgb};
+use super::sample::{LightSample, Reference};
 use crate::fingerprint::Fingerprint;
 use crate::sampler::Random4;
 use crate::scene;
@@ -77,7 +77,7 @@ impl Environment {
                 LightSample {
                     wi: at.frame().to_world(local),
                     pdf: self.pdf_constant(local),
-                    radiance: splat_rgb(*radiance),
+                    radiance: Rgb::broadcast(*radiance),
                     distance,
                     possible: Mask8::splat(true),
                 }
@@ -113,7 +113,7 @@ impl Environment {
     pub(crate) fn escaped(&self, depth: u32, dir: Vec3<F32x8>, pdf_ahead: impl FnOnce() -> F32x8) -> Option<Escaped> {
         let is_seen = if depth == 0 { self.camera_visible } else { self.illuminates };
         Some(match self.sky.as_ref().filter(|_| is_seen)? {
-            Sky::Constant(radiance) => Escaped { radiance: splat_rgb(*radiance), pdf: pdf_ahead() },
+            Sky::Constant(radiance) => Escaped { radiance: Rgb::broadcast(*radiance), pdf: pdf_ahead() },
             Sky::Map(map) => {
                 let seen = map.at(dir);
                 Escaped { radiance: seen.radiance, pdf: seen.pdf * F32x8::splat(self.share) }

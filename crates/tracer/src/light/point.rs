@@ -1,7 +1,7 @@
 //! A point light: the same intensity in all directions from one point.
 
 use super::delta::{Bounds, Light, LightSource};
-use super::sample::{LightSample, Reference, splat_rgb};
+use super::sample::{LightSample, Reference};
 use crate::effects::{Effect, EffectSet};
 use crate::scene::MAX_INTENSITY;
 use crate::scene::fields::{Fields, Refusal};
@@ -45,7 +45,7 @@ struct Prepared {
 
 impl Light for Prepared {
     fn sample(&self, at: &Reference, _u: [F32x8; 2]) -> LightSample {
-        LightSample::of_point(at, self.position, |_| splat_rgb(self.intensity))
+        LightSample::of_point(at, self.position, |_| Rgb::broadcast(self.intensity))
     }
     fn power(&self) -> f64 {
         4.0 * PI * f64::from(self.intensity.luminance())

@@ -25,11 +25,25 @@ impl<'a> Reference<'a> {
         self.frame
     }
 
-    /// Where a shadow ray to that point of the world starts. Distances and directions to it are measured from here.
+    /// How a shadow ray goes to that point of the world.
     #[inline(always)]
-    pub fn origin_towards(&self, target: Vec3<F32x8>) -> Vec3<F32x8> {
-        self.sides.origin_towards(target)
+    pub fn towards(&self, target: Vec3<F32x8>) -> Towards {
+        let to = target - self.sides.origin_towards(target);
+        let distance2 = to.length2();
+        let distance = distance2.sqrt();
+        Towards { wi: to * distance.recip(), distance, distance2 }
     }
+}
+
+/// The way from shading points to points of the world.
+#[derive(Clone, Copy, Debug)]
+pub struct Towards {
+    /// Unit; not finite where both are one point.
+    pub wi: Vec3<F32x8>,
+    /// How far it is \[m\].
+    pub distance: F32x8,
+    /// Its square.
+    pub distance2: F32x8,
 }
 
 /// A direction in which light may arrive at each of eight points.
@@ -71,18 +85,14 @@ impl LightSample {
         }
     }
 
-    /// Of a delta light: the direction to `target`, which is at a distance, and what arrives there.
+    /// Of a light in one point, whose intensity depends on the direction in which it leaves.
     #[inline(always)]
     pub(super) fn of_point(
         at: &Reference,
         position: Vec3<f32>,
         intensity: impl FnOnce(Vec3<F32x8>) -> Rgb<F32x8>,
     ) -> Self {
-        let position = Vec3::broadcast(position);
-        let to = position - at.origin_towards(position);
-        let distance2 = to.length2();
-        let distance = distance2.sqrt();
-        let wi = to * distance.recip();
+        let Towards { wi, distance, distance2 } = at.towards(Vec3::broadcast(position));
         Self {
             wi,
             pdf: F32x8::ONE,
@@ -91,10 +101,4 @@ impl LightSample {
             possible: distance.gt(F32x8::ZERO),
         }
     }
-}
-
-/// The same colour in every lane.
-#[inline(always)]
-pub(super) fn splat_rgb(c: Rgb<f32>) -> Rgb<F32x8> {
-    c.map(F32x8::splat)
 }

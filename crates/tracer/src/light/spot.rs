@@ -5,7 +5,7 @@
 //! Φ = 2πI·(1 − (sin c − sin b)/(c − b)), or 2πI·(1 − cos c) if the edge is sharp.
 
 use super::delta::{Bounds, Light, LightSource};
-use super::sample::{LightSample, Reference, splat_rgb};
+use super::sample::{LightSample, Reference};
 use crate::effects::{Effect, EffectSet};
 use crate::scene::MAX_INTENSITY;
 use crate::scene::fields::{Fields, Refusal};
@@ -102,7 +102,7 @@ impl Light for Prepared {
             let axis = Vec3::broadcast(self.axis);
             let angle = atan2_turns(axis.cross(away).length(), axis.dot(away));
             let rise = (F32x8::splat(self.cutoff) - angle) * F32x8::splat(self.per_turn);
-            splat_rgb(self.intensity) * rise.clamp(0.0, 1.0)
+            Rgb::broadcast(self.intensity) * rise.clamp(0.0, 1.0)
         })
     }
     fn power(&self) -> f64 {

@@ -40,11 +40,7 @@ macro_rules! __field {
 
     (gather $lanes:expr, [$($path:tt)*], Rgb<R>) => {{
         let lanes = $lanes;
-        $crate::Rgb::new(
-            $crate::F32x8::from_fn(|i| lanes[i & 7]$($path)*.r),
-            $crate::F32x8::from_fn(|i| lanes[i & 7]$($path)*.g),
-            $crate::F32x8::from_fn(|i| lanes[i & 7]$($path)*.b),
-        )
+        $crate::Rgb::from_lanes(|i| lanes[i & 7]$($path)*)
     }};
     (gather $lanes:expr, [$($path:tt)*], R) => {{
         let lanes = $lanes;
