@@ -131,8 +131,8 @@ impl EnvironmentMap {
 
     /// Takes the map into a fingerprint.
     pub(crate) fn describe(&self, print: &mut Fingerprint) {
-        self.picture.rgb.as_flattened().iter().for_each(|x| print.bytes(&x.to_le_bytes()));
-        [self.intensity, self.rotation].iter().for_each(|x| print.bytes(&x.to_le_bytes()));
+        print.numbers(self.picture.rgb.as_flattened().iter().copied());
+        print.numbers([self.intensity, self.rotation]);
     }
 
     /// Radiance and density of eight unit directions.

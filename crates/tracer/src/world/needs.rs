@@ -16,9 +16,11 @@ pub(super) fn of(scene: &Scene, meshes: &[Mesh], materials: &[PreparedMaterial],
     let (mut placed, mut used) = (vec![false; meshes.len()], vec![false; materials.len()]);
     scene.instances.iter().for_each(|instance| placed[instance.mesh] = true);
     for mesh in meshes.iter().zip(&placed).filter_map(|(mesh, placed)| placed.then_some(mesh)) {
-        let mut own = vec![false; materials.len()];
-        mesh.materials.iter().for_each(|&m| own[order[m as usize] as usize] = true);
-        let is_anisotropic = own.iter().zip(materials).any(|(own, material)| *own && material.anisotropic);
+        let mut is_anisotropic = false;
+        for material in mesh.materials.iter().map(|&m| order[m as usize] as usize) {
+            used[material] = true;
+            is_anisotropic |= materials[material].anisotropic;
+        }
         let with_uvs = mesh.uvs.is_some();
         let effects = EffectSet::when(mesh.normals.is_some(), Effect::SmoothNormals)
             .with(EffectSet::when(is_anisotropic && with_uvs, Effect::Tangents));
@@ -29,7 +31,6 @@ pub(super) fn of(scene: &Scene, meshes: &[Mesh], materials: &[PreparedMaterial],
                 mesh.name
             ));
         }
-        used.iter_mut().zip(&own).for_each(|(used, own)| *used |= own);
     }
     for material in materials.iter().zip(&used).filter_map(|(material, used)| used.then_some(material)) {
         let name = || format!("material \"{}\"", material.spec.name);
