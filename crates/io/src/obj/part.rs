@@ -4,6 +4,7 @@
 //! vertex of each combination that faces use, in the order of first use.
 
 use glam::DVec3;
+use gonio_tracer::scene::has_area;
 
 use super::polygon;
 
@@ -154,11 +155,4 @@ impl Part {
 pub(super) fn unit(v: DVec3) -> [f32; 3] {
     let largest = v.abs().max_element();
     if largest > 0.0 { (v / largest).normalize().as_vec3().to_array() } else { [0.0; 3] }
-}
-
-/// Whether the corners span more than the rounding of their coordinates.
-fn has_area([a, b, c]: [DVec3; 3]) -> bool {
-    let largest = a.abs().max(b.abs()).max(c.abs()).max_element();
-    let edge = (b - a).length().max((c - a).length()).max((c - b).length());
-    (b - a).cross(c - a).length() > 4.0 * f64::EPSILON * largest * edge
 }

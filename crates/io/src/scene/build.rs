@@ -10,7 +10,8 @@ use gonio_kernel::Rgb;
 use gonio_kernel::lobe::Lambert;
 use gonio_tracer::light::LightSource;
 use gonio_tracer::scene::{
-    Camera, Environment, FilmSettings, Instance, IntegratorSettings, Loading, LobeSpec, Material, Mesh, Scene, Stage,
+    BuildError, Camera, EXTENT, Environment, FilmSettings, Instance, IntegratorSettings, Loading, LobeSpec,
+    MAX_MATERIALS, Material, Mesh, Scene, Stage,
 };
 
 use crate::SceneError;
@@ -19,11 +20,6 @@ use crate::obj::{self, ObjFile};
 use crate::paths;
 use crate::textures::Textures;
 
-/// Largest number of materials: an index fits sixteen bits.
-const MAX_MATERIALS: usize = 65_535;
-/// Size of a scene in metres: outside, products of four lengths leave the range of f32.
-const MAX_EXTENT: f64 = 1e9;
-const MIN_EXTENT: f64 = 1e-6;
 /// Albedo of a surface whose material is not known.
 const GREY: f32 = 0.5;
 
@@ -156,8 +152,8 @@ impl Builder {
             self.instances.push(Instance { name: name.clone(), mesh, transform });
         }
         let extent = (self.bounds[1] - self.bounds[0]).max_element();
-        if !(MIN_EXTENT..=MAX_EXTENT).contains(&extent) {
-            return Err(blame(format!("the scene is {extent:e} m wide; it must be {MIN_EXTENT:e} to {MAX_EXTENT:e}")));
+        if !EXTENT.contains(&extent) {
+            return Err(blame(BuildError::Extent(extent).to_string()));
         }
         let names = object.file.materials.iter().map(|(name, _)| name.clone()).collect();
         self.objects.insert(path.to_path_buf(), object);

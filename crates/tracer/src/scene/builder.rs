@@ -1,19 +1,17 @@
 //! Scenes built in code, checked as those from files are.
 
 use super::{
-    Camera, CameraError, CameraSpec, Environment, FilmSettings, Instance, IntegratorSettings, MAX_RADIANCE, Material,
-    Mesh, Scene,
+    CameraError, CameraSpec, EXTENT, Environment, FilmSettings, Instance, IntegratorSettings, MAX_MATERIALS,
+    MAX_RADIANCE, Material, Mesh, Scene, has_area,
 };
 use crate::light::delta::LightSource;
 use crate::normal_map::NormalMap;
 use crate::texture::Texture;
 use glam::{DAffine3, DVec3};
 use gonio_kernel::Rgb;
+use std::mem::take;
 use std::sync::Arc;
 use thiserror::Error;
-
-/// Largest number of materials: an index fits sixteen bits.
-const MOST_MATERIALS: usize = 65_535;
 
 /// What is wrong with a scene that was built in code.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -32,6 +30,9 @@ pub enum BuildError {
         /// Samples per pixel.
         spp: u32,
     },
+    /// The scene is too small or too large for `f32`.
+    #[error("the scene is {0:e} m wide; it must be {min:e} to {max:e}", min = EXTENT.start(), max = EXTENT.end())]
+    Extent(f64),
     /// The camera has no view.
     #[error(transparent)]
     Camera(#[from] CameraError),
@@ -167,7 +168,13 @@ impl SceneBuilder {
                 warnings.push(format!("mesh \"{}\": {flat} triangles without an area are left out", mesh.name));
             }
         }
-        let (instances, camera) = (self.place_all()?, self.complete_camera()?);
+        let instances = self.place_all()?;
+        let bounds = self.bounds();
+        let extent = (bounds[1] - bounds[0]).max_element();
+        if !EXTENT.contains(&extent) {
+            return Err(BuildError::Extent(extent));
+        }
+        let camera = self.camera.complete(bounds, f64::from(width) / f64::from(height))?;
         Ok(Scene {
             film: self.film,
             camera,
@@ -196,7 +203,7 @@ impl SceneBuilder {
             Some(map) if map.map >= self.normal_maps.len() => {
                 Err(format!("names normal map {}; there are {}", map.map, self.normal_maps.len()))
             }
-            _ if self.materials.len() > MOST_MATERIALS => Err(format!("is one of more than {MOST_MATERIALS}")),
+            _ if self.materials.len() > MAX_MATERIALS => Err(format!("is one of more than {MAX_MATERIALS}")),
             _ => Ok(()),
         }
     }
@@ -242,12 +249,12 @@ impl SceneBuilder {
         if is_empty { Err(BuildError::Empty) } else { Ok(instances) }
     }
 
-    fn complete_camera(&self) -> Result<Camera, CameraError> {
+    /// The least and the largest coordinates of what is placed.
+    fn bounds(&self) -> [DVec3; 2] {
         let corners = self.instances.iter().flat_map(|&(mesh, transform)| {
             self.meshes[mesh].positions.iter().map(move |&p| transform.transform_point3(p.into()))
         });
-        let bounds = corners.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[lo, hi], p| [lo.min(p), hi.max(p)]);
-        self.camera.complete(bounds, f64::from(self.film.width) / f64::from(self.film.height))
+        corners.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[lo, hi], p| [lo.min(p), hi.max(p)])
     }
 }
 
@@ -267,14 +274,11 @@ impl Mesh {
 
 /// Leaves out triangles without an area; how many there were.
 fn leave_out_flat(mesh: &mut Mesh) -> usize {
-    let at = |v: u32| DVec3::from(mesh.positions[v as usize]);
-    let has_area = |&[a, b, c]: &[u32; 3]| (at(b) - at(a)).cross(at(c) - at(a)).length_squared() > 0.0;
-    let keep: Vec<bool> = mesh.triangles.iter().map(has_area).collect();
-    let mut flags = keep.iter();
-    mesh.triangles.retain(|_| flags.next().is_none_or(|keep| *keep));
-    let mut flags = keep.iter();
-    mesh.materials.retain(|_| flags.next().is_none_or(|keep| *keep));
-    keep.iter().filter(|keep| !**keep).count()
+    let before = mesh.triangles.len();
+    let all = take(&mut mesh.triangles).into_iter().zip(take(&mut mesh.materials));
+    (mesh.triangles, mesh.materials) =
+        all.filter(|(corners, _)| has_area(corners.map(|v| mesh.positions[v as usize].into()))).unzip();
+    before - mesh.triangles.len()
 }
 
 #[cfg(test)]
@@ -318,6 +322,7 @@ mod tests {
         assert_eq!(refused(|_, mesh| mesh.triangles.clear()), "mesh \"corner\": has 2 materials for 0 triangles");
         let emission = Rgb::splat(-1.0);
         assert!(with(|s, _| s.materials[0].emission = emission).unwrap_err().starts_with("material \"chalk\": emits"));
+        assert_eq!(refused(|_, mesh| mesh.positions[1][0] = 2e9), "the scene is 2e9 m wide; it must be 1e-6 to 1e9");
         assert!(refused(|s, _| s.film.width = 0).starts_with("the film is 0 x 600 pixels"));
         assert_eq!(refused(|s, _| s.instances.push((7, DAffine3::IDENTITY))), "instance 1: there is no such mesh");
         assert_eq!(

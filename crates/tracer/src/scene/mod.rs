@@ -19,17 +19,14 @@ mod environment;
 pub mod fields;
 mod film;
 mod integrator;
+mod limits;
 
 pub use crate::camera::{Camera, CameraError, CameraSpec};
 pub use builder::{BuildError, SceneBuilder};
 pub use environment::{Environment, Sky, SkyMap};
 pub use film::FilmSettings;
 pub use integrator::IntegratorSettings;
-
-/// Largest radiance a material or the environment may have: the film's range ends a little above.
-pub const MAX_RADIANCE: f64 = 1e6;
-/// Largest intensity of a light: 10⁶ W/(m² sr) over a square kilometre.
-pub const MAX_INTENSITY: f64 = 1e12;
+pub use limits::{EXTENT, MAX_INTENSITY, MAX_MATERIALS, MAX_RADIANCE, has_area};
 
 /// How far a scene has come on its way to being rendered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
