@@ -7,17 +7,8 @@ use gonio_accel::{Accel, Geometry, Intersect};
 use std::fmt;
 use std::sync::Arc;
 
-/// A world and what casts its rays: made together, so that they cannot be of different scenes.
-///
-/// ```no_run
-/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// # let scene: gonio_tracer::scene::Scene = unimplemented!();
-/// use gonio_accel::Intersect;
-/// use gonio_tracer::{Backend, Prepared, World};
-/// let prepared = Prepared::new(World::new(&scene)?, Backend::Obvhs, Intersect::Robust)?;
-/// # Ok(())
-/// # }
-/// ```
+/// A world and what casts its rays: made together, so that they cannot be of different scenes. The example of the crate
+/// makes one.
 pub struct Prepared {
     world: Arc<World>,
     accel: Box<dyn Accel>,

@@ -126,7 +126,7 @@ fn build(backends: &[Backend], specimen: &Specimen) -> Result<(Vec<Contender>, V
             if backend == Backend::Brute { &[Intersect::Robust][..] } else { &[Intersect::Robust, Intersect::Fast] };
         for &intersect in tests {
             let (before, start) = (memory::resident(), Instant::now());
-            let accel = backend.build(&specimen.geometry, intersect).map_err(|e| Error::Backend(e.into()))?;
+            let accel = backend.build(&specimen.geometry, intersect)?;
             let seconds = start.elapsed().as_secs_f64();
             let grown = before.zip(memory::resident()).map(|(before, after)| after - before);
             let (name, test) = (backend.to_string(), intersect.to_string());

@@ -225,7 +225,7 @@ pub(crate) fn run(
 ) -> Result<(), Error> {
     for &scale in plan.scales {
         let scaled = specimen.scaled(scale)?;
-        let oracle = Backend::Brute.build(&scaled.geometry, Intersect::Robust).map_err(|e| Error::Backend(e.into()))?;
+        let oracle = Backend::Brute.build(&scaled.geometry, Intersect::Robust)?;
         let mut witnesses = (plan.witnesses)(&scaled)?;
         // The first is the reference: one that is right to the last bit, if there is one.
         witnesses.sort_by_key(|witness| witness.standard != Standard::Exact);

@@ -2,7 +2,8 @@
 
 use gonio_accel::GeometryError;
 use gonio_io::{ImageError, SceneError};
-use gonio_tracer::WorldError;
+use gonio_tracer::scene::BuildError;
+use gonio_tracer::{BackendError, WorldError};
 use std::io;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -26,6 +27,9 @@ pub enum Error {
     /// A scene could not be read.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A scene that is built in code is not sound.
+    #[error(transparent)]
+    Build(#[from] BuildError),
     /// A scene could not be placed.
     #[error("scene: {0}")]
     World(#[from] WorldError),
@@ -42,6 +46,12 @@ pub enum Error {
         /// What the system said.
         source: io::Error,
     },
+}
+
+impl From<BackendError> for Error {
+    fn from(error: BackendError) -> Self {
+        Self::Backend(error.into())
+    }
 }
 
 impl Error {

@@ -55,6 +55,42 @@ type Irradiance = fn(DVec3) -> Rgb<f64>;
 /// Adds lights to a scene.
 type Lights = fn(&mut SceneBuilder) -> &mut SceneBuilder;
 
+/// A floor under some lights.
+struct Floor {
+    name: &'static str,
+    lights: Lights,
+    irradiance: Irradiance,
+    /// A closed form that is wrong on purpose, and must be noticed.
+    fault: Option<(&'static str, Irradiance)>,
+}
+
+const FLOORS: [Floor; 4] = [
+    Floor {
+        name: "point",
+        lights: |scene| scene.light(POINT),
+        irradiance: of_point,
+        fault: Some(("without the cosine of the floor", without_cosine)),
+    },
+    Floor {
+        name: "spot",
+        lights: |scene| scene.light(SPOT),
+        irradiance: of_spot,
+        fault: Some(("light beyond the edge", beyond_the_edge)),
+    },
+    Floor {
+        name: "distant",
+        lights: |scene| scene.light(DISTANT),
+        irradiance: of_distant,
+        fault: Some(("two percent more", two_percent_more)),
+    },
+    Floor {
+        name: "all three",
+        lights: |scene| scene.light(POINT).light(SPOT).light(DISTANT),
+        irradiance: of_all,
+        fault: None,
+    },
+];
+
 fn of_point(p: DVec3) -> Rgb<f64> {
     let to = POINT.position - p;
     POINT.intensity.map(f64::from) * (to.y / to.length().powi(3))
@@ -96,41 +132,35 @@ fn beyond_the_edge(p: DVec3) -> Rgb<f64> {
 /// # Errors
 /// If the backend cannot be built.
 pub(crate) fn run(options: &Options, sink: &mut dyn FnMut(Check)) -> Result<(), Error> {
-    let floors: [(&str, Lights, Irradiance); 4] = [
-        ("point", |scene| scene.light(POINT), of_point),
-        ("spot", |scene| scene.light(SPOT), of_spot),
-        ("distant", |scene| scene.light(DISTANT), of_distant),
-        ("all three", |scene| scene.light(POINT).light(SPOT).light(DISTANT), of_all),
-    ];
-    let level = sidak(options.significance, floors.len() * tests(SIZE, SIZE));
-    let mut send = |instrument: &str, subject: String, outcome, meaning: &str, worst: &Worst, start: Instant| {
-        if options.want(instrument, &subject) {
-            let (instrument, meaning, seconds) =
-                (instrument.to_owned(), meaning.to_owned(), start.elapsed().as_secs_f64());
-            let (measured, detail) = (worst.p, worst.place.clone());
-            sink(Check { instrument, subject, outcome, measured, limit: level, meaning, detail, seconds });
+    let level = sidak(options.significance, FLOORS.len() * tests(SIZE, SIZE));
+    let mut send = |instrument: &str, subject: &str, passed, meaning: &str, worst: Worst, start: Instant| {
+        if options.want(instrument, subject) {
+            sink(Check {
+                instrument: instrument.to_owned(),
+                subject: subject.to_owned(),
+                outcome: outcome(passed),
+                measured: worst.p,
+                limit: level,
+                meaning: meaning.to_owned(),
+                detail: worst.place,
+                seconds: start.elapsed().as_secs_f64(),
+            });
         }
     };
-    for (name, lights, irradiance) in floors {
-        let faults: &[(&str, Irradiance)] = match name {
-            "point" => &[("without the cosine of the floor", without_cosine)],
-            "spot" => &[("light beyond the edge", beyond_the_edge)],
-            "distant" => &[("two percent more", two_percent_more)],
-            _ => &[],
-        };
-        let wanted = options.only.as_ref().is_none_or(|only| only.contains("light") || name.contains(only.as_str()));
-        if !wanted && !options.want("planted-faults", "") {
+    for Floor { name, lights, irradiance, fault } in FLOORS {
+        let fault = fault.map(|(fault, wrong)| (format!("scene-lights: {name}, {fault}"), wrong));
+        let wants_fault = fault.as_ref().is_some_and(|(subject, _)| options.want("planted-faults", subject));
+        if !wants_fault && !options.want("scene-lights", name) {
             continue;
         }
         let start = Instant::now();
         let picture = floor(options, lights)?;
         let worst = compare(&picture, irradiance);
-        send("scene-lights", name.to_owned(), outcome(worst.p >= level), "p ≥", &worst, start);
-        for (fault, wrong) in faults {
+        send("scene-lights", name, worst.p >= level, "p ≥", worst, start);
+        if let Some((subject, wrong)) = fault {
             let start = Instant::now();
-            let worst = compare(&picture, *wrong);
-            let subject = format!("scene-lights: {name}, {fault}");
-            send("planted-faults", subject, outcome(worst.p < level), "p of the fault <", &worst, start);
+            let worst = compare(&picture, wrong);
+            send("planted-faults", &subject, worst.p < level, "p of the fault <", worst, start);
         }
     }
     Ok(())
@@ -157,9 +187,8 @@ fn floor(options: &Options, lights: Lights) -> Result<Picture, Error> {
         vfov: Some(2.0 * TAN.atan().to_degrees()),
         ..CameraSpec::default()
     });
-    let scene = scene.build().map_err(|why| Error::Backend(why.into()))?;
-    let prepared = Prepared::new(World::new(&scene)?, Backend::Obvhs, Intersect::Robust);
-    let prepared = prepared.map_err(|why| Error::Backend(why.into()))?;
+    let scene = scene.build()?;
+    let prepared = Prepared::new(World::new(&scene)?, Backend::Obvhs, Intersect::Robust)?;
     let settings = RenderSettings { seed: options.seed, ..RenderSettings::of(&scene) };
     Ok(render(&prepared, &settings, &mut |_| ControlFlow::Continue(())).picture)
 }

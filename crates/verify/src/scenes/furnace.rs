@@ -127,8 +127,7 @@ impl Furnace {
 
     /// Renders the scene.
     pub(super) fn render(&self, scene: &Scene, shot: &Shot, spp: u32, seed: u64) -> Result<Rendering, Error> {
-        let prepared =
-            Prepared::new(World::new(scene)?, shot.backend, Intersect::Robust).map_err(|e| Error::Backend(e.into()))?;
+        let prepared = Prepared::new(World::new(scene)?, shot.backend, Intersect::Robust)?;
         let mut settings = RenderSettings { spp, seed, threads: shot.threads, ..RenderSettings::of(scene) };
         settings.russian_roulette = shot.roulette;
         settings.every_effect = shot.every_effect;
