@@ -88,7 +88,7 @@ impl<'w> ShadingPoints<'w> {
                 let det = (u[1] - u[0]) * dv2 - (u[2] - u[0]) * dv1;
                 let (e1, e2) = (corners[1] - corners[0], corners[2] - corners[0]);
                 let tangent = (e1 * dv2 - e2 * dv1) * F32x8::ONE.copysign(det);
-                // Where a mesh that is kept once is mirrored, its corners go round the other way.
+                // Where an instanced mesh is mirrored, its corners go round the other way.
                 let handed = F32x8::ONE.copysign(det) * F32x8::ONE.copysign(winding.dot(e1.cross(e2)));
                 let along = Frame { z: shading, ..Frame::from_normal_tangent(shading, tangent) };
                 frame = Frame::select(along_u, along, frame);

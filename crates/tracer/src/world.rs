@@ -53,7 +53,7 @@ impl World {
         Self::by(scene, Sharing::default())
     }
 
-    /// Places the scene; `sharing` says which meshes are kept once, and not laid out. O(triangles).
+    /// Places the scene; `sharing` says which meshes are instanced, and not flattened. O(triangles).
     ///
     /// # Errors
     /// As [`World::new`].

@@ -30,8 +30,8 @@ struct Builder<'s> {
     casting: Vec<gonio_accel::Mesh>,
 }
 
-/// A mesh that is kept once, once it is there: its number, the middle that it is kept about, and where it starts.
-type Kept = Option<(u32, DVec3, Offset)>;
+/// An instanced mesh, if it is stored already: its number, the middle of its box, and where it starts.
+type Stored = Option<(u32, DVec3, Offset)>;
 
 impl Placing<'_> {
     /// Places all instances; a mesh that is owned is freed once it is not needed any more.
@@ -50,9 +50,9 @@ impl Placing<'_> {
         if of > Geometry::MOST_TRIANGLES {
             return Err(GeometryError::TooMany(of));
         }
-        let mut kept: Vec<Option<Kept>> =
-            uses.iter().map(|&uses| self.sharing.shares(of, uses).then(Kept::default)).collect();
-        let times = |mesh: usize| if kept[mesh].is_some() { uses[mesh].min(1) } else { uses[mesh] };
+        let mut stored: Vec<Option<Stored>> =
+            uses.iter().map(|&uses| self.sharing.shares(of, uses).then(Stored::default)).collect();
+        let times = |mesh: usize| if stored[mesh].is_some() { uses[mesh].min(1) } else { uses[mesh] };
         let triangles = (0..meshes.len()).map(|mesh| times(mesh) * counts[mesh]).sum();
         let mut builder = Builder { placing: self, lists: Surfaces::with_room_for(triangles)?, casting: Vec::new() };
 
@@ -60,12 +60,12 @@ impl Placing<'_> {
         for instance in self.instances {
             let mesh = &meshes[instance.mesh];
             done += counts[instance.mesh] as u64;
-            instances.push(match &mut kept[instance.mesh] {
-                Some(kept) => builder.place_kept(instance, mesh, kept),
-                None => builder.lay_out(instance, mesh),
+            instances.push(match &mut stored[instance.mesh] {
+                Some(stored) => builder.place_instanced(instance, mesh, stored),
+                None => builder.flatten(instance, mesh),
             });
             uses[instance.mesh] -= 1;
-            let is_done = uses[instance.mesh] == 0 || kept[instance.mesh].is_some();
+            let is_done = uses[instance.mesh] == 0 || stored[instance.mesh].is_some();
             if let (Cow::Owned(meshes), true) = (&mut meshes, is_done) {
                 meshes[instance.mesh] = Mesh::default();
             }
@@ -78,7 +78,7 @@ impl Placing<'_> {
 
 impl Builder<'_> {
     /// Appends an instance's triangles and says how rays meet them.
-    fn lay_out(&mut self, instance: &Instance, mesh: &Mesh) -> gonio_accel::Instance {
+    fn flatten(&mut self, instance: &Instance, mesh: &Mesh) -> gonio_accel::Instance {
         let (to_world, center) = (instance.transform, self.placing.center);
         let place = |p: DVec3| (to_world.transform_point3(p) - center).as_vec3();
         let mirrored = to_world.matrix3.determinant() < 0.0;
@@ -89,9 +89,9 @@ impl Builder<'_> {
         gonio_accel::Instance { mesh, transform: gonio_accel::Instance::IDENTITY }
     }
 
-    /// Places a mesh that is kept once, and appends it if it is not there yet.
-    fn place_kept(&mut self, instance: &Instance, mesh: &Mesh, kept: &mut Kept) -> gonio_accel::Instance {
-        let (number, middle, offset) = *kept.get_or_insert_with(|| {
+    /// Places an instanced mesh, and appends it if it is not stored yet.
+    fn place_instanced(&mut self, instance: &Instance, mesh: &Mesh, stored: &mut Stored) -> gonio_accel::Instance {
+        let (number, middle, offset) = *stored.get_or_insert_with(|| {
             let middle = middle_of(mesh.positions.iter().map(|&p| p.into()));
             let (offset, number) = self.append(mesh, |p| (p - middle).as_vec3(), |t| *t, Vec3::from);
             (number, middle, offset)

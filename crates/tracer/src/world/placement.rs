@@ -7,7 +7,7 @@ use gonio_kernel::Vec3;
 
 use super::triangle::{Triangle, unit_normal};
 
-/// How a mesh that is kept once comes to the world.
+/// How an instanced mesh comes to the world.
 #[derive(Clone, Debug)]
 pub(super) struct Placement {
     pub(super) instance: gonio_accel::Instance,

@@ -1,9 +1,10 @@
 //! What shading knows of the triangles that rays hit: corners, normals, texture coordinates, materials.
 //!
-//! Each instance's triangles are laid out in the world, as long as that takes little memory ([`gonio_accel::Sharing::LARGE`] triangles): then
-//! every lookup is one. In larger scenes a mesh that is placed more than once is kept once, about a middle of its own, and its
-//! corners and normals are moved to the world wherever a ray meets them. The front of a mirrored instance stays the front: its
-//! triangles swap two corners, or where a mesh is kept once, its normals turn.
+//! A scene is flattened (each instance's triangles lie in the world), as long as that takes little memory
+//! ([`gonio_accel::Sharing::LARGE`] triangles): then a lookup is one access. In larger scenes a mesh that is placed more than once is
+//! instanced: it is stored once, about the middle of its own box, and its corners and normals are transformed wherever a ray
+//! hits them. The front of a mirrored instance stays the front: its triangles swap two corners, or where the mesh is instanced,
+//! its normals turn.
 
 use super::placement::{Placement, turn};
 use super::triangle::Triangle;
@@ -17,11 +18,11 @@ pub(crate) struct Surfaces {
     pub(super) geometry: Geometry,
     /// Where each instance's triangles and vertices start in the lists below.
     pub(super) offsets: Vec<Offset>,
-    /// Those instances whose mesh is kept once.
+    /// Those instances whose mesh is instanced.
     pub(super) placements: Vec<Placement>,
     /// Vertices in the lists below; may outgrow what 32 bits count.
     pub(super) vertices: usize,
-    /// In the order (instance, prim) of what is laid out; a mesh that is kept once is there once, in its own coordinates.
+    /// In the order (instance, prim) of what is flattened; an instanced mesh is there once, in its own coordinates.
     pub(super) triangles: Vec<Triangle>,
     /// One entry per vertex if the scene has smooth normals, else empty; a zero normal means the geometric one.
     pub(super) normals: Vec<Vec3<f32>>,
@@ -34,7 +35,7 @@ pub(crate) struct Surfaces {
 pub(super) struct Offset {
     pub(super) triangle: u32,
     pub(super) vertex: usize,
-    /// Index into [`Surfaces::placements`] if what starts there is not laid out.
+    /// Index into [`Surfaces::placements`] if what starts there is instanced.
     pub(super) placement: Option<u32>,
 }
 
