@@ -1,11 +1,11 @@
 //! `gonio effects`: what a scene calls for, and what in it does so.
 
 use crate::output::{Target, write_text};
-use crate::usage::warn;
-use anyhow::{Context, Result};
+use crate::scene::load;
+use anyhow::Result;
 use gonio_kernel::lobe::AnyLobe;
 use gonio_kernel::model::Model;
-use gonio_tracer::{Effect, SceneEffects, World};
+use gonio_tracer::{Effect, SceneEffects};
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -47,9 +47,7 @@ struct Needed<'a> {
 /// # Errors
 /// The scene cannot be read or placed.
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let mut scene = gonio_io::load(&args.scene)?;
-    let world = World::take(&mut scene, &mut |_| ()).context("scene")?;
-    scene.warnings.iter().chain(world.warnings()).for_each(|warning| warn(warning));
+    let world = load(&args.scene)?;
     let report = Report::of(world.effects());
     let text = if args.json { serde_json::to_string_pretty(&report)? + "\n" } else { report.text() };
     write_text(&Target::Stdout, &text)?;

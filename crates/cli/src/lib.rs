@@ -18,6 +18,7 @@ mod effects;
 mod environment;
 mod output;
 mod render;
+mod scene;
 mod signals;
 mod tables;
 mod usage;

@@ -6,6 +6,7 @@ mod progress;
 mod stats;
 
 use crate::output::{Output, Target, extension, probe, write_text};
+use crate::scene::warn_of;
 use crate::signals;
 use crate::usage::{Usage, several, warn};
 use anyhow::{Context, Result};
@@ -93,13 +94,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let world = World::take(&mut scene, &mut |loading| report.loading(&loading)).context("scene")?;
     report.finish();
     let load_seconds = start.elapsed().as_secs_f64();
-    let mut warnings: Vec<&str> = Vec::new();
-    for warning in scene.warnings.iter().chain(world.warnings()) {
-        if !warnings.contains(&warning.as_str()) {
-            warn(warning);
-            warnings.push(warning);
-        }
-    }
+    warn_of(&scene, &world);
 
     let start = Instant::now();
     let mut tell = |loading| report.loading(&loading);

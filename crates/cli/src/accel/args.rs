@@ -1,17 +1,15 @@
 //! What the arguments that both subcommands take stand for: a scene to cast at, and the backends that cast.
 
-use crate::usage::{Usage, warn};
-use anyhow::{Context, Result};
-use gonio_tracer::{Backend, World};
+use crate::scene::load;
+use crate::usage::Usage;
+use anyhow::Result;
+use gonio_tracer::Backend;
 use gonio_verify::census::Specimen;
 use std::path::Path;
 
 /// Loads a scene to cast at.
 pub(super) fn specimen(path: &Path) -> Result<Specimen> {
-    let scene = gonio_io::load(path)?;
-    let world = World::new(&scene).context("scene")?;
-    scene.warnings.iter().chain(world.warnings()).for_each(|warning| warn(warning));
-    Ok(Specimen::of_world(&path.display().to_string(), &world))
+    Ok(Specimen::of_world(&path.display().to_string(), &load(path)?))
 }
 
 /// The backends that were asked for, or all that this build has but brute.
